@@ -60,6 +60,8 @@ fn busy(since: Instant) -> f64 {
 /// Steps per second and estimate of a query.
 fn ours(study: &Study) -> (f64, f64) {
     let call = Call {
+        branch: 0,
+        explains: true,
         seed: 1,
         line: CommandLine::default(),
         only: Vec::new(),

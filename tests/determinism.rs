@@ -121,6 +121,8 @@ impl Executor for Restless {
 
 fn call() -> Call<'static> {
     Call {
+        branch: 0,
+        explains: true,
         seed: 11,
         line: CommandLine {
             scenario: "a.scn".to_owned(),

@@ -32,6 +32,8 @@ pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String
 /// Runs a study with a seed and at most so many trials of a query.
 pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> CallResult {
     let call = Call {
+        branch: 0,
+        explains: true,
         seed,
         line: CommandLine { scenario: "model.scn".to_owned(), ..CommandLine::default() },
         only: Vec::new(),

@@ -85,7 +85,15 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
-    let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place, drivers: &drivers };
+    let call = Call {
+        seed: arguments.seed,
+        branch: 0,
+        explains: true,
+        line: line(arguments),
+        only,
+        place: &place,
+        drivers: &drivers,
+    };
     if arguments.forecast {
         deadline.enter(Phase::Sampling);
         return match forecast(study, &call, pool.executor(), &budget) {

@@ -430,6 +430,7 @@ impl Answers<'_> {
                 _ => witness::extremes(tally),
             };
             let calls = (self.call, self.budget);
+            let picks = if self.call.explains { picks } else { Vec::new() };
             result.witnesses =
                 witness::find(prepared, column, options[arm].advice, &picks, calls, &own, &result.unit);
         }

@@ -8,6 +8,10 @@ use crate::syntax::source::Span;
 pub struct Call<'c> {
     /// Seed of all random numbers.
     pub seed: u64,
+    /// Which of the calls that ask again with this seed it is: an adviser asks in each cycle. Other calls are number 0.
+    pub branch: u16,
+    /// Whether witnesses of its results are looked for, which takes time.
+    pub explains: bool,
     /// The files and settings of the call, for replay lines.
     pub line: CommandLine,
     /// Indices of the queries to ask; all of them if empty.

@@ -45,6 +45,21 @@ impl Cell {
     }
 }
 
+/// A series of trials: the seed, and which of the calls that ask again with this seed it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Series {
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Number of the call, modulo 65 536.
+    pub branch: u16,
+}
+
+impl From<u64> for Series {
+    fn from(seed: u64) -> Self {
+        Self { seed, branch: 0 }
+    }
+}
+
 /// A trial of a table: which option of which moves is followed, and the index of the trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Item {
@@ -55,9 +70,10 @@ pub struct Item {
 }
 
 impl Item {
-    /// Its address under a seed.
-    pub(super) fn address(self, seed: u64) -> Address<'static> {
-        let key = TrialKey { seed, index: self.index, branch: 0 };
+    /// Its address in a series.
+    pub(super) fn address(self, series: impl Into<Series>) -> Address<'static> {
+        let Series { seed, branch } = series.into();
+        let key = TrialKey { seed, index: self.index, branch };
         Address { key, advice: self.advice, changes: &[] }
     }
 

@@ -222,7 +222,7 @@ impl<'s> CompareSampling<'s> {
                 let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
                 for (job, cell) in self.jobs.iter().zip([a, b]) {
                     if cell.reading == Reading::Faulty {
-                        return Err(super::trial::fault(job.prepared, *item, job.seed));
+                        return Err(super::trial::fault(job.prepared, *item, job.series));
                     }
                 }
                 for (side, cell) in [a, b].into_iter().enumerate() {

@@ -108,7 +108,11 @@ impl<'q> EstimateSampling<'q> {
         let (slow, rest) =
             std::mem::take(&mut self.entries).into_iter().partition(|i| slow.contains(&i.column));
         self.entries = rest;
-        Self { next: self.next, spent: self.spent, ..Self::new(self.job.prepared, slow, self.job.seed) }
+        Self {
+            next: self.next,
+            spent: self.spent,
+            ..Self::new(self.job.prepared, slow, self.job.series.seed)
+        }
     }
 
     /// Leaves out some entries, and their places.
@@ -289,7 +293,7 @@ impl<'q> EstimateSampling<'q> {
             };
             if let Err(item) = self.read(&items, &cells, started, budget) {
                 self.entries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
-                let fault = super::trial::fault(self.job.prepared, item, self.job.seed);
+                let fault = super::trial::fault(self.job.prepared, item, self.job.series);
                 return Ok(Advance::Faulty(FaultyTrial { index: item.index, fault }));
             }
             self.next += cells.ready().min(items.len()) as u64;

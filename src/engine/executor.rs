@@ -4,7 +4,7 @@
 //! items before anybody looks at them.
 
 use super::budget::Budget;
-use super::cell::{Block, Cell, Item};
+use super::cell::{Block, Cell, Item, Series};
 use super::columns::Finished;
 use super::prepared::PreparedWorld;
 use super::runner::Runner;
@@ -127,8 +127,8 @@ pub struct Job<'s> {
     pub prepared: &'s PreparedWorld,
     /// The columns.
     pub columns: Vec<usize>,
-    /// Seed of all random numbers.
-    pub seed: u64,
+    /// The series of its trials.
+    pub series: Series,
     workers: Mutex<Vec<Runner<'s>>>,
     /// Room of rounds that were read.
     room: Mutex<Vec<Cells>>,
@@ -138,9 +138,9 @@ pub struct Job<'s> {
 
 impl<'s> Job<'s> {
     /// A job without workers yet.
-    pub fn new(prepared: &'s PreparedWorld, columns: Vec<usize>, seed: u64) -> Self {
+    pub fn new(prepared: &'s PreparedWorld, columns: Vec<usize>, series: impl Into<Series>) -> Self {
         let (workers, room) = (Mutex::default(), Mutex::default());
-        Self { prepared, columns, seed, workers, room, steps: AtomicU64::new(0) }
+        Self { prepared, columns, series: series.into(), workers, room, steps: AtomicU64::new(0) }
     }
 
     /// Goes on with other columns.
@@ -293,13 +293,13 @@ impl<'p, B: Iterator<Item = Block<'p>>> Task<'p, '_, B> {
         let mut worker = self.job.worker()?;
         while worker.takes_blocks() {
             let Some(mut block) = self.blocks.lock().ok().and_then(|mut blocks| blocks.next()) else { break };
-            worker.run_block(self.job.seed, &mut block, budget);
+            worker.run_block(self.job.series, &mut block, budget);
         }
         let mut take = || {
             let place = self.next.fetch_add(1, Ordering::Relaxed);
             self.items.get(place).map(|item| (place, *item))
         };
-        let finished = worker.run(self.job.seed, &mut take, budget);
+        let finished = worker.run(self.job.series, &mut take, budget);
         self.job.keep(worker);
         self.over.store(true, Ordering::Relaxed);
         Ok(finished)

@@ -4,7 +4,7 @@
 //! are part of the address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
 
 use super::budget::Budget;
-use super::cell::{Item, Reading};
+use super::cell::{Item, Reading, Series};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
@@ -157,7 +157,7 @@ struct Round {
 
 impl<'s> RankSampling<'s> {
     /// A ranking of the options of a setup.
-    pub(super) fn new(query: &'s Query, setup: RankSetup<'s>, seed: u64) -> Result<Self, Fault> {
+    pub(super) fn new(query: &'s Query, setup: RankSetup<'s>, series: Series) -> Result<Self, Fault> {
         let procedure = Procedure::new(&setup)?;
         let range = match &setup.kind {
             MeasureKind::Expectation { range, .. } => Some(*range),
@@ -171,7 +171,7 @@ impl<'s> RankSampling<'s> {
             job_of.push(known.unwrap_or(targets.len()));
             if known.is_none() {
                 targets.push(option.target);
-                jobs.push(Job::new(prepared, vec![option.target.column], seed));
+                jobs.push(Job::new(prepared, vec![option.target.column], series));
             }
         }
         let means = match range {
@@ -386,7 +386,7 @@ impl<'s> RankSampling<'s> {
                         let item = round.items[place];
                         if row[0].reading == Reading::Faulty {
                             let prepared = self.setup.worlds[share.arm];
-                            return Err(super::trial::fault(prepared, item, self.jobs[0].seed));
+                            return Err(super::trial::fault(prepared, item, self.jobs[0].series));
                         }
                         self.tallies[share.arm].add(item.index, &row[0], self.range);
                         if let Some(mean) = self.means.get_mut(share.arm) {

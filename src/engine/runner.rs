@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::budget::Budget;
-use super::cell::{Block, Item};
+use super::cell::{Block, Item, Series};
 use super::chain::{JumpChain, StepChain};
 use super::columns::{EventColumns, Finished, StepColumns};
 use super::prepared::PreparedWorld;
@@ -59,13 +59,14 @@ impl<'s> Runner<'s> {
     /// takes blocks does nothing here.
     pub(super) fn run(
         &mut self,
-        seed: u64,
+        series: impl Into<Series>,
         next: &mut dyn FnMut() -> Option<(usize, Item)>,
         budget: &Budget,
     ) -> Finished {
+        let series = series.into();
         let mut next = || {
             let (place, item) = next()?;
-            Some((place, item.address(seed)))
+            Some((place, item.address(series)))
         };
         match &mut self.kind {
             RunnerKind::Steps(batch) => {
@@ -86,7 +87,9 @@ impl<'s> Runner<'s> {
     }
 
     /// Runs the trials of a block, if it takes blocks; the budget may say stop, then unfinished ones are dropped.
-    pub(super) fn run_block(&mut self, seed: u64, block: &mut Block<'_>, budget: &Budget) {
+    pub(super) fn run_block(&mut self, series: impl Into<Series>, block: &mut Block<'_>, budget: &Budget) {
+        // Nobody moves in a chain: nobody is advised again and again.
+        let Series { seed, .. } = series.into();
         match &mut self.kind {
             RunnerKind::StepChain(chain) => chain.run(self.prepared, seed, block, budget),
             RunnerKind::JumpChain(chain) => chain.run(self.prepared, seed, block, budget),

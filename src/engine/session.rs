@@ -3,6 +3,7 @@
 use super::answer::Answers;
 use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
+use super::cell::Series;
 use super::compare::{CompareSampling, Sides};
 use super::estimate::{Advance, EstimateEntry, EstimateSampling};
 use super::executor::Executor;
@@ -393,7 +394,7 @@ impl<'a> Session<'a> {
             kind: measure.kind.clone(),
             rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
         };
-        RankSampling::new(query, setup, self.call.seed)
+        RankSampling::new(query, setup, Series { seed: self.call.seed, branch: self.call.branch })
     }
 
     /// Runs a group for its share of the time.

@@ -1,6 +1,6 @@
 //! One trial on its own: the words for one in which the model is wrong.
 
-use super::cell::Item;
+use super::cell::{Item, Series};
 use super::fault::Fault;
 use super::flaw::Flaw;
 use super::prepared::PreparedWorld;
@@ -8,8 +8,8 @@ use crate::base::tick::{Clock, Tick};
 use crate::kernel::{End, Run, State, process};
 
 /// Runs a trial up to its error, and says what is wrong, when, and in which state.
-pub(super) fn fault(prepared: &PreparedWorld, item: Item, seed: u64) -> Fault {
-    let Ok((mut run, _)) = Run::of(&prepared.program, item.address(seed)) else { return Fault::Unsuitable };
+pub(super) fn fault(prepared: &PreparedWorld, item: Item, series: Series) -> Fault {
+    let Ok((mut run, _)) = Run::of(&prepared.program, item.address(series)) else { return Fault::Unsuitable };
     let end = loop {
         if let Err(end) = run.next_state() {
             break end;

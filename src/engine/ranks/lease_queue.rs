@@ -309,7 +309,7 @@ impl LeaseQueue {
             number,
             world: round.world,
             columns: round.job.columns.clone(),
-            seed: round.job.seed,
+            seed: round.job.series.seed,
             seconds: budget.seconds_left(),
             items: round.items[places.clone()].to_vec(),
         }));

@@ -199,7 +199,7 @@ impl<'s> Worker<'s> {
             return Err(Malformed("unknown advice"));
         }
         let warm = self.jobs.iter().position(|job| {
-            let same = job.prepared.number == Some(lease.world) && job.seed == lease.seed;
+            let same = job.prepared.number == Some(lease.world) && job.series == lease.seed.into();
             same && job.columns == lease.columns
         });
         if let Some(warm) = warm {

@@ -237,7 +237,7 @@ fn plainly(
         for (item, row) in items.iter().zip(cells.rows()) {
             let Some(row) = row else { return Ok((tally, Some(budget.stopped_by()))) };
             if row[0].reading == Reading::Faulty {
-                return Err(super::trial::fault(question.prepared, *item, question.seed));
+                return Err(super::trial::fault(question.prepared, *item, question.seed.into()));
             }
             tally.add(item.index, &row[0], None);
         }
