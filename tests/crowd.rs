@@ -112,7 +112,7 @@ impl Crowd {
             name: format!("person[{}]", k + 1),
             entity: 100 + k as u32,
             body: Arc::new(Body::new(Kind::Sfm, |parameter| Law::Constant(person.value(parameter)))),
-            start: Start { position: Position::Point(person.at), velocity: person.velocity },
+            start: Start { position: Position::Point(person.at), velocity: person.velocity, driving: None },
             route: Route::Onward,
             group: None,
             particle: person.particle,

@@ -348,7 +348,14 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
             scene
         };
         let particle = |persons| {
-            Some(Particle { persons, repulsion: 0.25, friction: 0.0, radius_factor: 1.0, tau_factor: 1.0 })
+            Some(Particle {
+                persons,
+                repulsion: 0.25,
+                friction: 0.0,
+                radius_factor: 1.0,
+                spread: 0.0,
+                tau_factor: 1.0,
+            })
         };
         let (mut persons, mut ones) = (scene(None).start(layout), scene(particle(1)).start(layout));
         let pair = |drive| {
@@ -372,6 +379,7 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
                 repulsion: 1.0,
                 friction: 1e4,
                 radius_factor: 1.0,
+                spread: 0.0,
                 tau_factor: 1.0,
             }),
             ..person(p(0.0, y))

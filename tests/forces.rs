@@ -125,6 +125,7 @@ fn random(n: usize, side: f64, kind: Kind, rng: &mut Numbers) -> Crowd {
                 repulsion: rng.between(0.1, 2.0),
                 friction: 1e4,
                 radius_factor: 1.0,
+                spread: 0.0,
                 tau_factor: 1.0,
             }),
             ..person(p(rng.between(0.0, side), rng.between(0.0, side)))

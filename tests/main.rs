@@ -46,6 +46,7 @@ mod replay;
 mod reports;
 mod robustness;
 mod runs;
+mod seen;
 mod semantics;
 mod shapes;
 mod signal_semantics;

@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 22] = [
+const PAIRS: [(&str, &str); 25] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -28,11 +28,14 @@ const PAIRS: [(&str, &str); 22] = [
     pair!("epidemic"),
     pair!("exits"),
     pair!("hotel"),
+    pair!("hotel-any"),
+    pair!("hotel-groups"),
     pair!("leader"),
     pair!("overflow"),
     pair!("queue"),
     pair!("robot"),
     pair!("sensors"),
+    pair!("square"),
     pair!("station"),
     pair!("table1"),
     pair!("tandem"),

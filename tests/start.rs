@@ -49,7 +49,7 @@ fn agent(entity: u32, position: Position) -> Agent {
         name: format!("a{entity}"),
         entity,
         body: Arc::new(body()),
-        start: Start { position, velocity: p(0.0, 0.0) },
+        start: Start { position, velocity: p(0.0, 0.0), driving: None },
         route: Route::Legs { legs: vec![Leg::To(Goal::Region(RegionId(0)))], then_leave: false },
         group: None,
         particle: None,
@@ -315,8 +315,14 @@ fn near_is_near_and_needs_its_anchor() {
 #[test]
 fn a_particle_is_the_sum_of_its_persons() {
     let mut four = agent(9, Position::Point(p(3.0, 2.0)));
-    four.particle =
-        Some(Particle { persons: 4, repulsion: 1.0, friction: 0.0, radius_factor: 1.0, tau_factor: 1.0 });
+    four.particle = Some(Particle {
+        persons: 4,
+        repulsion: 1.0,
+        friction: 0.0,
+        radius_factor: 1.0,
+        spread: 0.0,
+        tau_factor: 1.0,
+    });
     let program = Program::new(Arc::new(scenario(vec![four.clone()])));
     let mut state = empty(&program);
     load(&program, &mut state, 0, key(0), None).unwrap();

@@ -10,6 +10,7 @@ use super::number::Number;
 use super::places::Written;
 use super::process::Declared;
 use super::said::without_comments;
+use super::sighting::{Grouping, Tracks};
 use super::starts::Starts;
 use super::study::Origins;
 use super::study::Texts;
@@ -20,7 +21,6 @@ use super::wording::{Frame, Uses};
 use crate::base::decimal::Decimal;
 use crate::base::geometry::Shape;
 use crate::base::tick::{Clock, Tick};
-use crate::data::tracks::Recording;
 use crate::logic::Tree;
 use crate::model::{AgentId, BehaviourId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
@@ -96,7 +96,11 @@ pub(super) struct Elaborator<'a> {
     /// Names whose expansion is under way.
     pub(super) expanding: Vec<(ScopeId, String)>,
     /// Recordings read so far.
-    pub(super) recordings: Vec<Option<Recording>>,
+    pub(super) recordings: Vec<Option<Tracks>>,
+    /// Finds groups of people who are seen.
+    pub(super) grouping: Option<Grouping>,
+    /// Agents who are named and not seen, with their stable numbers: they never come.
+    pub(super) unseen: Vec<(AgentId, u32)>,
     /// The recorded persons in use, with the places of their declarations.
     pub(super) recorded: BTreeMap<(usize, u32), Span>,
     /// Shapes of regions known so far.
@@ -225,6 +229,8 @@ impl<'a> Elaborator<'a> {
             constants: BTreeMap::new(),
             expanding: Vec::new(),
             recordings: Vec::new(),
+            grouping: None,
+            unseen: Vec::new(),
             gaits: BTreeMap::new(),
             recorded: BTreeMap::new(),
             shapes: Vec::new(),

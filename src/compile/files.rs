@@ -1,5 +1,7 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
+use super::sighting::{Grouping, Seen};
+use crate::data::tracks::Velocity;
 use crate::syntax::ast::{Item, ScenarioFile, SceneItem, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -20,7 +22,9 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
     let mut found = Vec::new();
     for item in &file.items {
         match item {
-            Item::Tracks { path, .. } => found.push(Request { path: path.value.clone(), span: path.span }),
+            Item::Tracks { file: Some((_, path)), .. } => {
+                found.push(Request { path: path.value.clone(), span: path.span });
+            }
             Item::Scene(items) => {
                 for item in items {
                     if let SceneItem::Import { path, .. } = item {
@@ -51,12 +55,33 @@ pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
 #[derive(Clone, Debug, Default)]
 pub struct Files {
     contents: BTreeMap<String, Result<Vec<u8>, String>>,
+    /// What is seen now, by the names of tracks, which then need no file.
+    seen: BTreeMap<String, Seen>,
+    /// Which velocities recordings have, whatever the scenario says.
+    pub velocity: Option<Velocity>,
+    /// Finds groups of people; without it everybody walks alone.
+    pub grouping: Option<Grouping>,
 }
 
 impl Files {
+    /// No files yet; groups of people are found so.
+    pub fn grouped_by(grouping: Grouping) -> Self {
+        Self { grouping: Some(grouping), ..Self::default() }
+    }
+
     /// Hands over the contents of a path, or a sentence why there are none.
     pub fn insert(&mut self, path: impl Into<String>, contents: Result<Vec<u8>, String>) {
         self.contents.insert(path.into(), contents);
+    }
+
+    /// Hands over who is seen now, instead of what the tracks of this name contain.
+    pub fn see(&mut self, tracks: impl Into<String>, seen: Seen) {
+        self.seen.insert(tracks.into(), seen);
+    }
+
+    /// Who is seen now instead of what the tracks of this name contain.
+    pub(super) fn seen(&self, tracks: &str) -> Option<&Seen> {
+        self.seen.get(tracks)
     }
 
     /// The contents of a path, without the mark of UTF-8 that some programs write first.

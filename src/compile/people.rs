@@ -1,4 +1,4 @@
-//! Agents and groups: declared one by one, in numbers, or from a recording.
+//! Agents: declared one by one, in numbers, or from a recording.
 
 use super::behaviour::With;
 use super::dimension::Dimension;
@@ -6,10 +6,12 @@ use super::elaborator::{Elaborator, Locals, Lowered};
 use super::kinds::Kind;
 use super::laws::value_span;
 use super::places::Written;
+use super::sighting::Sighting;
 use super::symbols::{Meaning, unknown};
+use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
-use crate::model::{self, Agent, AgentId, Body, Group, Law, Parameter, Particle, Position, Route, Start};
-use crate::syntax::ast::{AgentsDecl, Expr, Field, GroupDecl, Ident, Value};
+use crate::model::{Agent, AgentId, Body, Group, Law, Parameter, Position, Route, Source, Start};
+use crate::syntax::ast::{AgentsDecl, Expr, Field, Ident};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -17,16 +19,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Speed below which a recorded person stands, m/s.
-const STANDS: f64 = 0.05;
+pub(super) const STANDS: f64 = 0.05;
+/// After so many seconds nobody is waited for.
+const NEVER: f64 = 1e9;
 /// Most agents of a scenario.
 const MOST_AGENTS: usize = 1_000_000;
 /// Most stable numbers of a declaration.
 const MOST_ENTITIES: u64 = 1 << 20;
-/// Friction where two particles overlap, kg/(m s), unless the group sets its own: two couples that pass
-/// through each other with an overlap of a metre lose half of their relative speed in about a second.
-const PARTICLE_FRICTION: f64 = 40.0;
-/// Factor of the social force between two particles, unless the group sets its own.
-const PARTICLE_REPULSION: f64 = 0.5;
 
 /// The people of a scenario so far.
 #[derive(Default)]
@@ -148,99 +147,6 @@ impl<'a> Elaborator<'a> {
         self.scopes[0].define(&decl.name, meaning);
     }
 
-    /// `group friends[2]: companion as particle { … }`
-    pub(super) fn group(&mut self, decl: &'a GroupDecl, people: &mut People) {
-        let count = self.count(&decl.count);
-        let with = self.with(&decl.name, &decl.with);
-        let mut kind = self.kind(&decl.kind);
-        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
-        let start = self.start(&decl.name, &rest, people, true);
-        let route = self.route_of(&rest);
-        let field = |this: &mut Self, name: &str, dimension: Dimension, default: f64| -> Lowered<f64> {
-            let Some(field) = rest.iter().find(|f| f.name.name == name) else { return Ok(default) };
-            let Value::Plain(expr) = &field.value else {
-                let place = value_span(&field.value);
-                return this.report(Diagnostic::error(Code::E0305, place, "expected a number"));
-            };
-            let number = this.number_of(expr, dimension, &Locals::default())?;
-            if number.value < 0.0 {
-                let said = format!("`{name}` cannot be negative");
-                return this.report(Diagnostic::error(Code::E0405, expr.span, said));
-            }
-            Ok(number.value)
-        };
-        let attraction = field(self, "attraction", Dimension::FORCE, 0.0);
-        let repulsion = field(self, "repulsion", Dimension::NONE, PARTICLE_REPULSION);
-        let friction = field(self, "friction", Dimension::FRICTION, PARTICLE_FRICTION);
-        if decl.particle.is_some() {
-            self.only(&rest, &["at", "velocity", "route", "repulsion", "friction"]);
-        } else {
-            self.only(&rest, &["at", "velocity", "route", "attraction"]);
-        }
-        let given = |name: &str| decl.body.iter().any(|f| f.name.name == name);
-        let body = kind.and_then(|kind| {
-            let meaning = kind.base.meaning();
-            if let (Some(at), true) = (decl.particle, kind.base != model::Kind::Sfm) {
-                let error =
-                    Diagnostic::error(Code::E0406, at, format!("{meaning} cannot move `as particle`"));
-                return self.report(error.hint("remove `as particle` to simulate the members"));
-            }
-            if kind.base == model::Kind::Stepped {
-                let said = format!("{meaning} cannot be a group: no force acts on them");
-                let error = Diagnostic::error(Code::E0406, decl.kind.span, said);
-                return self.report(error.hint(format!("write `agents {}[…]`", decl.name.name)));
-            }
-            self.body(&kind, &decl.kind)
-        });
-        let forces = (attraction, repulsion, friction);
-        let (Ok(count), Ok(body), Ok(start), Ok(route), (Ok(attraction), Ok(repulsion), Ok(friction))) =
-            (count, body, start, route, forces)
-        else {
-            self.define_empty(&decl.name, decl.particle.is_none(), with);
-            return;
-        };
-        if let Some(span) = decl.particle {
-            if count == 0 {
-                self.note(Diagnostic::error(Code::E0402, span, "a particle needs at least one person"));
-                self.define_empty(&decl.name, false, with);
-                return;
-            }
-            let size = (count as f64).sqrt();
-            let particle = Particle {
-                persons: count as u32,
-                repulsion,
-                friction,
-                radius_factor: if given("radius") { 1.0 } else { size },
-                tau_factor: if given("tau") { 1.0 } else { size },
-            };
-            let Ok(members) = self.people(&decl.name, 1, false, people, |_| {
-                (Arc::new(body.clone()), start.clone(), route.clone())
-            }) else {
-                self.define_empty(&decl.name, false, with);
-                return;
-            };
-            people.agents[members[0].0 as usize].particle = Some(particle);
-            people.written(&members, &rest, decl.name.span);
-            self.attach(with, &members);
-            self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle: true });
-            return;
-        }
-        let Ok(members) = self.people(&decl.name, count, true, people, |_| {
-            (Arc::new(body.clone()), start.clone(), route.clone())
-        }) else {
-            self.define_empty(&decl.name, true, with);
-            return;
-        };
-        people.written(&members, &rest, decl.name.span);
-        self.attach(with, &members);
-        let index = people.groups.len() as u32;
-        for member in &members {
-            people.agents[member.0 as usize].group = Some(index);
-        }
-        people.groups.push(Group { name: decl.name.name.clone(), members: members.clone(), attraction });
-        self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle: false });
-    }
-
     pub(super) fn define_empty(&mut self, name: &Ident, plural: bool, with: With<'a>) {
         // What follows can then speak of the name without further errors. Numbers of people begin at 0.
         let id = AgentId(u32::MAX - self.undeclared.len() as u32);
@@ -343,7 +249,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn route_of(&mut self, fields: &[&Field]) -> Lowered<Route> {
+    pub(super) fn route_of(&mut self, fields: &[&Field]) -> Lowered<Route> {
         match fields.iter().find(|f| f.name.name == "route") {
             Some(field) => self.route(&field.value, &Locals::default()),
             None => Ok(Route::Legs { legs: Vec::new(), then_leave: false }),
@@ -371,7 +277,7 @@ impl<'a> Elaborator<'a> {
         with: With<'a>,
         people: &mut People,
     ) {
-        let found = self.observations(recorded, decl.plural);
+        let found = self.sighted(recorded, !decl.plural);
         let mut kind = kind;
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let has_route = rest.iter().any(|f| f.name.name == "route");
@@ -382,16 +288,14 @@ impl<'a> Elaborator<'a> {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
-        let found = self.onto_rims(recorded, found, &base[Parameter::Radius]);
+        if found.people.is_empty() && !decl.plural {
+            self.unseen(&decl.name, base, with, people);
+            return;
+        }
+        let found = self.onto_rims(recorded, found.people, &base[Parameter::Radius]);
         let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
         let Ok(members) = self.people(&decl.name, found.len(), decl.plural, people, |k| {
-            let velocity = found[k].velocity;
-            let speed = velocity.norm();
-            let mut body = base.clone();
-            if speed >= STANDS && !own_speed && base.planner.is_none() {
-                body[Parameter::Speed] = Law::Constant(speed);
-            }
-            (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
+            (Arc::new(moving(&base, &found[k], own_speed)), start(&found[k]), route.clone())
         }) else {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
@@ -404,4 +308,51 @@ impl<'a> Elaborator<'a> {
         };
         self.scopes[0].define(&decl.name, meaning);
     }
+
+    /// Declares somebody who is named and not seen, and so never comes.
+    pub(super) fn unseen(&mut self, name: &Ident, body: Body, with: With<'a>, people: &mut People) {
+        let start = Start::at_rest(Vec2::zeros());
+        let route = Route::Legs { legs: Vec::new(), then_leave: false };
+        let body = Arc::new(body);
+        let every = self.entities(people, &format!("{}.every", name.name), 1, name.span);
+        let members = self.people(name, 1, false, people, |_| (body.clone(), start.clone(), route.clone()));
+        let (Ok(members), Ok(entity)) = (members, every) else {
+            self.define_empty(name, false, with);
+            return;
+        };
+        self.attach(with, &members);
+        self.unseen.push((members[0], entity));
+        self.coming = true;
+        self.may_be_absent(members[0]);
+        people.coming.insert(members[0]);
+        self.scopes[0].define(name, Meaning::Agent(members[0]));
+    }
+
+    /// Sources of those who never come.
+    pub(super) fn never_arriving(&self, people: &People) -> Vec<Source> {
+        let source = |(agent, entity): &(AgentId, u32)| Source {
+            name: people.agents[agent.0 as usize].name.clone(),
+            entity: *entity,
+            every: Law::Constant(NEVER),
+            members: vec![*agent],
+            most: 1,
+        };
+        self.unseen.iter().map(source).collect()
+    }
+}
+
+/// The body of a kind with the speed of somebody who was seen, unless it has one of its own.
+pub(super) fn moving(body: &Body, seen: &Sighting, own_speed: bool) -> Body {
+    let mut body = body.clone();
+    let speed = seen.driving.norm();
+    if speed >= STANDS && !own_speed && body.planner.is_none() {
+        body[Parameter::Speed] = Law::Constant(speed);
+    }
+    body
+}
+
+/// The start of somebody who was seen.
+pub(super) fn start(seen: &Sighting) -> Start {
+    let driving = (seen.driving != seen.velocity).then_some(seen.driving);
+    Start { position: Position::Point(seen.position), velocity: seen.velocity, driving }
 }

@@ -98,7 +98,8 @@ pub(super) fn beside(barriers: &[Solid<'_>], from: Vec2, radius: f64) -> Option<
 
 /// The smallest radius that a trial can give an agent, m.
 fn least_radius(agent: &Agent) -> f64 {
-    agent.body[Parameter::Radius].bounds().0 * agent.particle.map_or(1.0, |particle| particle.radius_factor)
+    let drawn = agent.body[Parameter::Radius].bounds().0;
+    agent.particle.map_or(drawn, |particle| particle.radius(drawn))
 }
 
 /// Whether some point of a shape may be as far as `radius` from all barriers. Only a sure no is a no.

@@ -1,86 +1,35 @@
-//! Recordings as start states.
+//! Recordings as start states: who is chosen among those who are seen at a time.
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
-use super::files::Files;
-use super::files::missing;
 use super::places;
+use super::sighting::{Sighting, Tracks};
 use super::symbols::{Meaning, unknown};
-use crate::data::tracks::{LineError, PersonState, Recording, read_eth_biwi};
+use super::tracks::SHOWN_LINES;
 use crate::model::Law;
-use crate::syntax::ast::{Expr, Ident, Recorded, Text};
+use crate::syntax::ast::{Expr, Ident, Recorded, Whom};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeSet;
 use std::collections::btree_map::Entry;
 
-/// How many bad lines of a file are shown.
-const SHOWN_LINES: usize = 10;
+/// Who starts as was seen.
+pub(super) struct Chosen {
+    /// Everybody, by ascending id; nobody where all who are named are out of sight.
+    pub(super) people: Vec<Sighting>,
+    /// The groups in which they are, each by ascending id; who is in none is alone in one.
+    pub(super) parties: Vec<Vec<Sighting>>,
+}
 
-impl<'a> Elaborator<'a> {
-    /// `tracks hotel = eth_biwi "seq_hotel/obsmat.txt"`
-    pub(super) fn tracks(&mut self, name: &'a Ident, format: &'a Ident, path: &'a Text, files: &Files) {
-        let index = self.recordings.len();
-        let recording = self.recording(format, path, files).ok();
-        self.recordings.push(recording);
-        self.enter(name, Meaning::Tracks(index));
-    }
-
-    fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
-        if format.name != "eth_biwi" {
-            let error = unknown("format", &format.name, format.span, Code::E0702, ["eth_biwi"].into_iter())
-                .hint("the only format is eth_biwi");
-            return self.report(error);
-        }
-        let bytes = match files.get(&path.value) {
-            Ok(bytes) => bytes,
-            Err(reason) => return self.report(missing(path.span, &reason)),
-        };
-        let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error(Code::E0702, path.span, "the file is not UTF-8 text"));
-        };
-        match read_eth_biwi(text) {
-            Ok(recording) => Ok(recording),
-            Err(errors) => {
-                let shown: Vec<String> = errors.iter().take(SHOWN_LINES).map(ToString::to_string).collect();
-                let more = errors.len().saturating_sub(SHOWN_LINES);
-                let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
-                let error = Diagnostic::error(
-                    Code::E0702,
-                    path.span,
-                    match errors.as_slice() {
-                        [LineError { line: 0, .. }] => {
-                            "the file is not a recording in this format".to_owned()
-                        }
-                        [_] => "1 line of this file cannot be read".to_owned(),
-                        many => match many.iter().map(|one| one.line).collect::<BTreeSet<_>>().len() {
-                            1 => "1 line of this file cannot be read".to_owned(),
-                            lines => format!("{lines} lines of this file cannot be read"),
-                        },
-                    },
-                )
-                .label(format!("{}{rest}", shown.join("; ")));
-                self.report(error)
-            }
-        }
-    }
-
-    /// The people of a recording at a time.
-    pub(super) fn observations(&mut self, recorded: &Recorded, plural: bool) -> Lowered<Vec<PersonState>> {
-        let time = self.number_of(&recorded.at, Dimension::TIME, &Locals::default());
-        let only: Vec<_> = recorded.only.iter().map(|e| self.identity(e)).collect();
-        let except: Vec<_> = recorded.except.iter().map(|e| self.identity(e)).collect();
-        let name = &recorded.tracks;
-        let index = match self.find(&name.name, 0) {
-            Some((_, Meaning::Tracks(index))) => index,
-            Some((_, Meaning::Doubtful)) => return Err(Reported),
+impl Elaborator<'_> {
+    /// The tracks of a name.
+    fn named_tracks(&mut self, name: &Ident) -> Lowered<usize> {
+        match self.find(&name.name, 0) {
+            Some((_, Meaning::Tracks(index))) => Ok(index),
+            Some((_, Meaning::Doubtful)) => Err(Reported),
             Some((_, meaning)) => {
-                let error = Diagnostic::error(
-                    Code::E0206,
-                    name.span,
-                    format!("expected a recording, but `{}` is {}", name.name, meaning.noun()),
-                );
-                return self.report(error);
+                let said = format!("expected a recording, but `{}` is {}", name.name, meaning.noun());
+                self.report(Diagnostic::error(Code::E0206, name.span, said))
             }
             None => {
                 let recordings: Vec<String> = self.scopes[0]
@@ -88,81 +37,62 @@ impl<'a> Elaborator<'a> {
                     .filter(|(_, e)| matches!(e.meaning, Meaning::Tracks(_)))
                     .map(|(n, _)| n.to_owned())
                     .collect();
-                let error = unknown(
-                    "recording",
-                    &name.name,
-                    name.span,
-                    Code::E0201,
-                    recordings.iter().map(String::as_str),
-                );
-                return self.report(error);
+                let known = recordings.iter().map(String::as_str);
+                self.report(unknown("recording", &name.name, name.span, Code::E0201, known))
             }
+        }
+    }
+
+    /// The people of a recording at a time who are chosen; with `single`, one at most.
+    pub(super) fn sighted(&mut self, recorded: &Recorded, single: bool) -> Lowered<Chosen> {
+        let time = self.number_of(&recorded.at, Dimension::TIME, &Locals::default());
+        let whom = recorded.only.iter().chain(&recorded.except);
+        let ids: Vec<Lowered<u32>> = whom.map(|whom| self.identity(&whom.id)).collect();
+        let index = self.named_tracks(&recorded.tracks);
+        let (time, ids, index) = (time?, ids.into_iter().collect::<Lowered<Vec<_>>>()?, index?);
+        let Some(Some(tracks)) = self.recordings.get(index) else { return Err(Reported) };
+        let found = tracks.at(time.value);
+        let is_live = matches!(tracks, Tracks::Live { .. });
+        let groups = match tracks {
+            Tracks::Live { seen, .. } => seen.groups.clone(),
+            Tracks::Recorded { .. } => self.grouping.map(|group| group(&found)).unwrap_or_default(),
         };
-        let (time, only, except) = (
-            time?,
-            only.into_iter().collect::<Lowered<Vec<_>>>()?,
-            except.into_iter().collect::<Lowered<Vec<_>>>()?,
-        );
-        let Some(Some(recording)) = self.recordings.get(index) else {
-            return Err(super::elaborator::Reported);
-        };
-        let found = recording.at(time.value);
-        if found.is_empty() {
+        if let (true, Tracks::Recorded { recording, .. }) = (found.is_empty(), tracks) {
             let near = recording.nearest_time(time.value);
+            let hint = near.map_or("the recording is empty".to_owned(), |t| {
+                format!("the nearest time with persons is {t} s")
+            });
             let error =
-                Diagnostic::error(Code::E0703, recorded.at.span, "no person was recorded at this time").hint(
-                    near.map_or("the recording is empty".to_owned(), |t| {
-                        format!("the nearest time with persons is {t} s")
-                    }),
-                );
-            return self.report(error);
+                Diagnostic::error(Code::E0703, recorded.at.span, "no person was recorded at this time");
+            return self.report(error.hint(hint));
         }
-        let mut failed = false;
-        for (expr, id) in recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except)) {
-            if !found.iter().any(|o| o.id == *id) {
-                let present: Vec<String> = found.iter().map(|o| o.id.to_string()).collect();
-                let error = Diagnostic::error(
-                    Code::E0703,
-                    expr.span,
-                    format!("person {id} was not recorded at this time"),
-                )
-                .hint(format!("the recorded persons are {}", present.join(", ")));
-                self.note(error);
-                failed = true;
-            }
+        let named = recorded.only.iter().chain(&recorded.except).zip(&ids);
+        let named: Vec<(&Whom, u32)> = named.map(|(whom, id)| (whom, *id)).collect();
+        if !is_live {
+            self.check_presence(&named, &found)?;
         }
-        if failed {
-            return Err(super::elaborator::Reported);
+        let mut sets = named.iter().map(|(whom, id)| {
+            let group = groups.iter().find(|group| whom.is_group && group.contains(id));
+            group.cloned().unwrap_or_else(|| vec![*id])
+        });
+        let only: BTreeSet<u32> = sets.by_ref().take(recorded.only.len()).flatten().collect();
+        let except: BTreeSet<u32> = sets.flatten().collect();
+        let is_chosen = |id: u32| (recorded.only.is_empty() || only.contains(&id)) && !except.contains(&id);
+        let people: Vec<Sighting> = found.into_iter().filter(|one| is_chosen(one.id)).collect();
+        if single && people.len() != 1 && !(is_live && people.is_empty()) {
+            let said = format!("{} persons were recorded at this time, but one is needed", people.len());
+            let error = Diagnostic::error(Code::E0703, recorded.span, said);
+            return self.report(error.hint("choose one with `id`, or declare `agents`"));
         }
-        let asked = recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except));
-        let mut named: Vec<u32> = Vec::new();
-        for (expr, id) in asked {
-            if named.contains(id) {
-                let text = format!("person {id} is listed twice");
-                return self.report(Diagnostic::error(Code::E0703, expr.span, text));
-            }
-            named.push(*id);
-        }
-        let chosen: Vec<PersonState> = found
-            .into_iter()
-            .filter(|o| (only.is_empty() || only.contains(&o.id)) && !except.contains(&o.id))
-            .collect();
-        if !plural && chosen.len() != 1 {
-            let error = Diagnostic::error(
-                Code::E0703,
-                recorded.span,
-                format!("{} persons were recorded at this time, but one is needed", chosen.len()),
-            )
-            .hint("choose one with `id`, or declare `agents`");
-            return self.report(error);
-        }
-        for person in &chosen {
+        // Of a declaration that was not read to its end nobody knows whom it chooses.
+        let chosen = if self.is_cut(recorded.span) { &[] } else { people.as_slice() };
+        for person in chosen {
             match self.recorded.entry((index, person.id)) {
                 Entry::Vacant(free) => {
                     free.insert(recorded.span);
                 }
                 Entry::Occupied(first) => {
-                    let text = format!("person {} of `{}` is already used", person.id, name.name);
+                    let text = format!("person {} of `{}` is already used", person.id, recorded.tracks.name);
                     let error = Diagnostic::error(Code::E0703, recorded.span, text)
                         .related(*first.get(), "first used here")
                         .hint(format!("exclude it: `except {}`", person.id));
@@ -170,16 +100,41 @@ impl<'a> Elaborator<'a> {
                 }
             }
         }
-        Ok(chosen)
+        let parties = parties(&people, &groups);
+        Ok(Chosen { people, parties })
+    }
+
+    /// Everybody who is named must be there, and be named once.
+    fn check_presence(&mut self, named: &[(&Whom, u32)], found: &[Sighting]) -> Lowered<()> {
+        let mut failed = false;
+        for (whom, id) in named {
+            if !found.iter().any(|one| one.id == *id) {
+                let present: Vec<String> = found.iter().map(|one| one.id.to_string()).collect();
+                let said = format!("person {id} was not recorded at this time");
+                let error = Diagnostic::error(Code::E0703, whom.id.span, said);
+                self.note(error.hint(format!("the recorded persons are {}", present.join(", "))));
+                failed = true;
+            }
+        }
+        if failed {
+            return Err(Reported);
+        }
+        for (k, (whom, id)) in named.iter().enumerate() {
+            if named[..k].iter().any(|(before, other)| other == id && before.is_group == whom.is_group) {
+                let text = format!("person {id} is listed twice");
+                return self.report(Diagnostic::error(Code::E0703, whom.id.span, text));
+            }
+        }
+        Ok(())
     }
 
     /// Puts those who were recorded in a barrier, or so near one that they could not start there, beside it.
     pub(super) fn onto_rims(
         &mut self,
         recorded: &Recorded,
-        mut found: Vec<PersonState>,
+        mut found: Vec<Sighting>,
         radius: &Law,
-    ) -> Vec<PersonState> {
+    ) -> Vec<Sighting> {
         let barriers = places::solids(&self.scene.barriers);
         let (least, most) = radius.bounds();
         let room = if most.is_finite() { most } else { least };
@@ -228,4 +183,18 @@ impl<'a> Elaborator<'a> {
             )),
         }
     }
+}
+
+/// Chosen people by groups, in the order of the first of each.
+fn parties(people: &[Sighting], groups: &[Vec<u32>]) -> Vec<Vec<Sighting>> {
+    let group = |id: u32| groups.iter().position(|group| group.contains(&id));
+    let mut parties: Vec<(Option<usize>, Vec<Sighting>)> = Vec::new();
+    for person in people {
+        let own = group(person.id);
+        match parties.iter_mut().find(|(other, _)| own.is_some() && *other == own) {
+            Some((_, party)) => party.push(*person),
+            None => parties.push((own, vec![*person])),
+        }
+    }
+    parties.into_iter().map(|(_, party)| party).collect()
 }

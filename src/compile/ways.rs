@@ -192,7 +192,8 @@ impl<'a> Elaborator<'a> {
             None => plain,
         };
         let typed = self.lower(&expr, &Locals::default())?;
-        if matches!(typed, Typed::Agents { .. }) {
+        let is_one = matches!(&typed, Typed::Agents { set, particle: true } if set.members.len() == 1);
+        if matches!(typed, Typed::Agents { .. }) && !is_one {
             let said = format!("{what} must belong to one agent");
             let error = Diagnostic::error(Code::E0406, expr.span, said);
             return self.report(error.hint(format!(

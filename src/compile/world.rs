@@ -171,10 +171,11 @@ impl<'a> Elaborator<'a> {
         self.told = if told == Told::Nothing && clock.is_ok() { Told::Whole } else { told };
         let variables = self.settle_variables();
         for item in &file.items {
-            if let Item::Tracks { name, format, path } = item {
-                self.tracks(name, format, path, files);
+            if let Item::Tracks { name, file, body } = item {
+                self.tracks(name, file.as_ref(), body, files);
             }
         }
+        self.grouping = files.grouping;
         self.settle_gaits(file, files);
         let mut barrier = 0;
         for item in &file.items {
@@ -191,7 +192,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         self.leave_by_moves(file);
-        let mut sources = Vec::new();
+        let mut sources = self.never_arriving(&people);
         for item in &file.items {
             if let Item::Source(decl) = item {
                 sources.extend(self.source(decl, &mut people));

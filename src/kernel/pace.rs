@@ -49,7 +49,7 @@ impl<'s> Pace<'s> {
             });
             // As they are drawn: who goes on as recorded has the recorded speed, and several as one body a longer
             // relaxation time.
-            let recorded = if agent.route == Route::Onward { agent.start.velocity.norm() } else { 0.0 };
+            let recorded = if agent.route == Route::Onward { agent.start.driving().norm() } else { 0.0 };
             let factor = agent.particle.map_or(1.0, |particle| particle.tau_factor);
             for (largest, (parameter, value)) in own.iter_mut().zip(Parameter::ALL.iter().zip(body)) {
                 let value = match parameter {

@@ -67,7 +67,7 @@ impl Parameters {
             for person in 1..persons {
                 values[Parameter::Mass as usize] += value(Parameter::Mass, person)?;
             }
-            values[Parameter::Radius as usize] *= particle.radius_factor;
+            values[Parameter::Radius as usize] = particle.radius(values[Parameter::Radius as usize]);
             values[Parameter::Tau as usize] *= particle.tau_factor;
             values[Parameter::A as usize] *= many;
             values[Parameter::Noise as usize] /= many.sqrt();
@@ -79,7 +79,7 @@ impl Parameters {
     pub(super) fn own(&self, who: (AgentId, u32), key: TrialKey) -> Option<Values> {
         let agent = self.scenario.agents.get(who.0.0 as usize)?;
         let mut values = self.draw(who, key).ok()?;
-        let recorded = agent.start.velocity.norm();
+        let recorded = agent.start.driving().norm();
         if agent.route == Route::Onward && recorded > 0.0 {
             values[Parameter::Speed as usize] = recorded;
         }

@@ -88,8 +88,19 @@ pub struct Particle {
     pub friction: f64,
     /// Factor of the radius as drawn: the root of `persons` (equal area) unless the group sets its own.
     pub radius_factor: f64,
+    /// Root mean square distance from their middle, m, of persons who were seen; else 0. The radius is at least this and one
+    /// person's.
+    pub spread: f64,
     /// Factor of the relaxation time as drawn: the root of `persons` unless the group sets its own.
     pub tau_factor: f64,
+}
+
+impl Particle {
+    /// The radius of the body, m, of persons with a radius as drawn.
+    pub fn radius(&self, drawn: f64) -> f64 {
+        let (equal, wide) = (drawn * self.radius_factor, drawn + self.spread);
+        if equal > wide { equal } else { wide }
+    }
 }
 
 /// Where and how an agent starts.
@@ -99,6 +110,20 @@ pub struct Start {
     pub position: Position,
     /// Velocity, m/s.
     pub velocity: Vec2,
+    /// The velocity that it wants, m/s, where it goes on as it started; `None` for that with which it starts.
+    pub driving: Option<Vec2>,
+}
+
+impl Start {
+    /// At a point, standing.
+    pub const fn at_rest(point: Vec2) -> Self {
+        Self { position: Position::Point(point), velocity: Vec2::new(0.0, 0.0), driving: None }
+    }
+
+    /// The velocity that whoever goes on wants, m/s.
+    pub fn driving(&self) -> Vec2 {
+        self.driving.unwrap_or(self.velocity)
+    }
 }
 
 /// A rule of placement.
@@ -127,7 +152,7 @@ pub enum Route {
         /// Whether it departs on reaching the last goal.
         then_leave: bool,
     },
-    /// On as it started: driving velocity is the start velocity (its direction and speed), for ever.
+    /// On as it started: its driving velocity (`Start::driving`) stays the same for ever.
     Onward,
 }
 

@@ -10,8 +10,8 @@ use crate::compile::study::{Ask, MeasureKind, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{
-    Agent, AgentId, Family, GaitRule, Goal, Law, Leg, Move, Obstacle, Parameter, Position, RoadmapRule,
-    Route, Scenario, SearchRule,
+    Agent, AgentId, Family, GaitRule, Goal, Law, Leg, Move, Obstacle, Parameter, Particle, Position,
+    RoadmapRule, Route, Scenario, SearchRule,
 };
 use crate::stats::Chosen;
 use std::fmt::Write;
@@ -223,9 +223,9 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     if let Some(p) = agent.particle {
         let _ = writeln!(
             out,
-            "      one body for {} persons: radius times {}, tau times {}, repulsion times {}, friction {} kg/(m s)",
-            p.persons,
-            number(p.radius_factor),
+            "      one body for {}: radius {}, tau times {}, repulsion times {}, friction {} kg/(m s)",
+            counted(u64::from(p.persons), "person"),
+            width(&p),
             number(p.tau_factor),
             number(p.repulsion),
             number(p.friction)
@@ -240,6 +240,15 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     };
     let _ = writeln!(out, "      starts {place}, {}", velocity(agent.start.velocity));
     let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+}
+
+/// How wide the body of a group is.
+fn width(particle: &Particle) -> String {
+    let times = format!("times {}", number(particle.radius_factor));
+    if particle.spread > 0.0 {
+        return format!("{times}, or plus {} m if that is more", number(particle.spread));
+    }
+    times
 }
 
 /// How a roadmap is drawn, in words.

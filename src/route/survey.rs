@@ -149,8 +149,8 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
     let scene = &scenario.scene;
     let agent = &scenario.agents[id.0 as usize];
     let law = &agent.body[Parameter::Radius];
-    let factor = agent.particle.map_or(1.0, |particle| particle.radius_factor);
-    let radius = |of: f64| Atlas::class((of * factor).max(0.01), is_drawn(agent));
+    let body = |of: f64| agent.particle.map_or(of, |particle| particle.radius(of));
+    let radius = |of: f64| Atlas::class(body(of).max(0.01), is_drawn(agent));
     let (least, most) = (radius(law.bounds().0), radius(law.draw(WIDEST)));
     for Stretch { origin, goal, name, .. } in stretches(scene, agent) {
         if let Some((from, from_name)) = &origin {

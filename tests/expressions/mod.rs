@@ -56,7 +56,7 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         name: format!("a{k}"),
         entity: k as u32,
         body: Arc::clone(&body),
-        start: Start { position: Position::Point(p(0.0, 0.0)), velocity: p(0.0, 0.0) },
+        start: Start { position: Position::Point(p(0.0, 0.0)), velocity: p(0.0, 0.0), driving: None },
         route: Route::Onward,
         group: None,
         particle: None,

@@ -45,12 +45,13 @@ const AFTER_NAME: [char; 4] = ['=', ':', '{', '['];
 /// Code of one sign of equality for another.
 const EQUALS: Code = Code::E0112;
 /// Words that start a declaration with a name.
-const DECLARES: [&str; 20] = [
+const DECLARES: [&str; 21] = [
     "agent",
     "agents",
     "behaviour",
     "const",
     "group",
+    "groups",
     "kind",
     "label",
     "let",

@@ -305,8 +305,8 @@ impl<'a> Person<'a> {
 
     /// Puts an agent at the beginning of its way. Its position, parameters and key must be in the state.
     pub(super) fn begin(mut self, start: &Start, advice: Option<(Move, u64)>) {
-        let moving = unit(start.velocity);
-        let speed = start.velocity.norm();
+        let moving = unit(start.driving());
+        let speed = start.driving().norm();
         self.way = Way::default();
         let own = self.drive.first[self.agent];
         let first = match advice {

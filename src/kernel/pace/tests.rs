@@ -21,7 +21,11 @@ fn scenario(speed: Law, noise: Law, changes: Vec<(Parameter, Amount)>) -> Scenar
         name: "me".to_owned(),
         entity: 1,
         body: Arc::new(body),
-        start: Start { position: Position::Point(Vec2::new(0.0, 0.0)), velocity: Vec2::new(0.3, 0.4) },
+        start: Start {
+            position: Position::Point(Vec2::new(0.0, 0.0)),
+            velocity: Vec2::new(0.3, 0.4),
+            driving: None,
+        },
         route: Route::Legs { legs: vec![Leg::Wait(Law::Constant(1.0))], then_leave: false },
         group: None,
         particle: None,
@@ -165,8 +169,14 @@ fn parameters_are_what_is_drawn_not_what_is_declared() {
     let mut group = scenario(Law::Constant(0.1), Law::Constant(0.0), twice(Parameter::Tau));
     Arc::make_mut(&mut group.agents[0].body)[Parameter::Tau] = Law::Constant(0.5);
     assert_eq!(fastest(&group), 1.0);
-    group.agents[0].particle =
-        Some(Particle { persons: 16, repulsion: 1.0, friction: 0.0, radius_factor: 4.0, tau_factor: 4.0 });
+    group.agents[0].particle = Some(Particle {
+        persons: 16,
+        repulsion: 1.0,
+        friction: 0.0,
+        radius_factor: 4.0,
+        spread: 0.0,
+        tau_factor: 4.0,
+    });
     assert_eq!(fastest(&group), 4.0);
 }
 

@@ -19,5 +19,5 @@ pub use property::{
 };
 pub use scenario::{
     AgentsDecl, Field, GroupDecl, Item, KindDecl, Leg, LetDecl, MoveOption, MovesDecl, PathsDecl, Recorded,
-    Route, ScenarioFile, SceneItem, ShapeExpr, Value,
+    Route, ScenarioFile, SceneItem, ShapeExpr, Value, Whom,
 };

@@ -51,10 +51,10 @@ pub enum Item {
     Tracks {
         /// Name of the recording.
         name: Ident,
-        /// Format.
-        format: Ident,
-        /// File.
-        path: Text,
+        /// Format and file; `None` for what is observed while it happens: `stream`.
+        file: Option<(Ident, Text)>,
+        /// Its fields.
+        body: Vec<Field>,
     },
     /// `scene { … }`
     Scene(Vec<SceneItem>),
@@ -264,6 +264,15 @@ pub struct KindDecl {
     pub body: Vec<Field>,
 }
 
+/// Somebody who was recorded, or everybody in somebody's group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whom {
+    /// The id of a person.
+    pub id: Expr,
+    /// Whether it stands for the whole group of this person.
+    pub is_group: bool,
+}
+
 /// `from hotel at 646.8 s id 367`, `from hotel at 646.8 s except 367, 368`, `from hotel at 646.8 s`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recorded {
@@ -271,10 +280,10 @@ pub struct Recorded {
     pub tracks: Ident,
     /// When.
     pub at: Expr,
-    /// `id 367` or `id 3, 4`: only these.
-    pub only: Vec<Expr>,
-    /// `except 367, 368`: all present but these.
-    pub except: Vec<Expr>,
+    /// `id 367`, `id 3, 4` or `group of 367`: only these.
+    pub only: Vec<Whom>,
+    /// `except 367, group of 368`: all present but these.
+    pub except: Vec<Whom>,
     /// Where.
     pub span: Span,
 }
@@ -298,19 +307,24 @@ pub struct AgentsDecl {
     pub body: Vec<Field>,
 }
 
-/// `group friends[2]: companion as particle { … }`
+/// `group friends[2]: companion as particle { … }`, or one for each inferred group:
+/// `groups crowd: adult as particle from hotel at 646.8 s`
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroupDecl {
+    /// Whether the keyword was `groups`.
+    pub plural: bool,
     /// Its name.
     pub name: Ident,
-    /// Number of members.
-    pub count: Expr,
+    /// Number of members, unless a recording tells it.
+    pub count: Option<Expr>,
     /// Kind of its members.
     pub kind: Ident,
     /// The place of `as particle`, if present.
     pub particle: Option<Span>,
     /// Behaviours attached by `with`.
     pub with: Vec<Expr>,
+    /// Start state from a recording.
+    pub recorded: Option<Recorded>,
     /// Its fields.
     pub body: Vec<Field>,
 }

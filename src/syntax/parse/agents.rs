@@ -3,7 +3,7 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{
-    AgentsDecl, Expr, Field, GroupDecl, Ident, KindDecl, Leg, Recorded, Route, SourceDecl, Value,
+    AgentsDecl, Expr, Field, GroupDecl, Ident, KindDecl, Leg, Recorded, Route, SourceDecl, Value, Whom,
 };
 
 impl Builder<'_> {
@@ -24,6 +24,23 @@ impl Builder<'_> {
         let name = self.declared(&parts.part(Rule::name)?);
         let count = self.size(&mut parts)?;
         let kind = self.ident(&parts.part(Rule::name)?);
+        let (with, recorded) = self.attachments(&mut parts)?;
+        Some(AgentsDecl { plural, name, count, kind, with, recorded, body: self.body(parts) })
+    }
+
+    pub(super) fn group(&mut self, pair: Pair<'_>) -> Option<GroupDecl> {
+        let plural = pair.clone().into_inner().next()?.as_rule() == Rule::kw_groups;
+        let mut parts = Parts::of(pair);
+        let name = self.declared(&parts.part(Rule::name)?);
+        let count = self.size(&mut parts)?;
+        let kind = self.ident(&parts.part(Rule::name)?);
+        let particle = parts.part(Rule::particle).map(|particle| self.span(&particle));
+        let (with, recorded) = self.attachments(&mut parts)?;
+        Some(GroupDecl { plural, name, count, kind, particle, with, recorded, body: self.body(parts) })
+    }
+
+    /// `from …` and `with …`, in either order.
+    fn attachments(&mut self, parts: &mut Parts<'_>) -> Option<(Vec<Expr>, Option<Recorded>)> {
         let (mut with, mut recorded) = (Vec::new(), None);
         loop {
             if let Some(clause) = parts.part(Rule::with) {
@@ -31,23 +48,9 @@ impl Builder<'_> {
             } else if let Some(clause) = parts.part(Rule::recorded) {
                 recorded = Some(self.recorded(clause)?);
             } else {
-                break;
+                return Some((with, recorded));
             }
         }
-        Some(AgentsDecl { plural, name, count, kind, with, recorded, body: self.body(parts) })
-    }
-
-    pub(super) fn group(&mut self, pair: Pair<'_>) -> Option<GroupDecl> {
-        let mut parts = Parts::of(pair);
-        let name = self.declared(&parts.part(Rule::name)?);
-        let count = self.size(&mut parts)??;
-        let kind = self.ident(&parts.part(Rule::name)?);
-        let particle = parts.part(Rule::particle).map(|particle| self.span(&particle));
-        let with = match parts.part(Rule::with) {
-            Some(clause) => self.with(clause)?,
-            None => Vec::new(),
-        };
-        Some(GroupDecl { name, count, kind, particle, with, body: self.body(parts) })
     }
 
     pub(super) fn source_decl(&mut self, pair: Pair<'_>) -> Option<SourceDecl> {
@@ -90,12 +93,18 @@ impl Builder<'_> {
         let tracks = self.ident(&parts.part(Rule::name)?);
         let at = self.expr(parts.part(Rule::arith)?)?;
         let mut ids = |pair: Option<Pair<'_>>| match pair {
-            Some(pair) => Parts::of(pair).map(|id| self.expr(id)).collect::<Option<Vec<_>>>(),
+            Some(pair) => Parts::of(pair).map(|whom| self.whom(whom)).collect::<Option<Vec<_>>>(),
             None => Some(Vec::new()),
         };
         let only = ids(parts.part(Rule::only))?;
         let except = ids(parts.part(Rule::except))?;
         Some(Recorded { tracks, at, only, except, span })
+    }
+
+    fn whom(&mut self, pair: Pair<'_>) -> Option<Whom> {
+        let is_group = pair.as_rule() == Rule::group_of;
+        let id = if is_group { Parts::of(pair).part(Rule::arith)? } else { pair };
+        Some(Whom { id: self.expr(id)?, is_group })
     }
 
     pub(super) fn body(&mut self, mut parts: Parts<'_>) -> Vec<Field> {

@@ -16,12 +16,13 @@ pub(super) enum Anchor {
 }
 
 /// Keywords, and what follows the name behind them.
-const NAMED: [(&str, &[&str]); 23] = [
+const NAMED: [(&str, &[&str]); 24] = [
     ("agent", &[":", "["]),
     ("agents", &[":", "["]),
     ("behaviour", &["{", "("]),
     ("const", &["="]),
-    ("group", &["["]),
+    ("group", &["[", ":"]),
+    ("groups", &[":"]),
     ("kind", &[":"]),
     ("label", &["="]),
     ("let", &["=", "("]),
@@ -63,6 +64,7 @@ pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
             "behaviour",
             "const",
             "group",
+            "groups",
             "kind",
             "let",
             "moves",

@@ -31,6 +31,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_forall => "forall",
         Rule::kw_from => "from",
         Rule::kw_group => "group",
+        Rule::kw_groups => "groups",
         Rule::kw_heading => "heading",
         Rule::kw_hole => "hole",
         Rule::kw_id => "id",
@@ -67,6 +68,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_scene => "scene",
         Rule::kw_source => "source",
         Rule::kw_state => "state",
+        Rule::kw_stream => "stream",
         Rule::kw_stop => "stop",
         Rule::kw_then => "then",
         Rule::kw_to => "to",
@@ -161,6 +163,7 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
             "agent",
             "agents",
             "group",
+            "groups",
             "moves",
             "paths",
             "process",
@@ -180,7 +183,8 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::with => &["with"],
         Rule::preset => &["preset"],
         Rule::particle | Rule::walkable => &["as"],
-        Rule::only => &["id"],
+        Rule::only => &["id", "group"],
+        Rule::group_of => &["group"],
         Rule::except => &["except"],
         Rule::then_leave => &["then"],
         Rule::wait => &["wait"],
@@ -263,6 +267,7 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::with
         | Rule::preset
         | Rule::only
+        | Rule::group_of
         | Rule::except
         | Rule::then_leave
         | Rule::rate

@@ -54,8 +54,11 @@ impl Builder<'_> {
             Rule::tracks => {
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::name)?);
-                let format = self.ident(&parts.part(Rule::name)?);
-                Some(Item::Tracks { name, format, path: self.quoted(&parts.part(Rule::text)?) })
+                let file = match parts.part(Rule::name) {
+                    Some(format) => Some((self.ident(&format), self.quoted(&parts.part(Rule::text)?))),
+                    None => None,
+                };
+                Some(Item::Tracks { name, file, body: self.body(parts) })
             }
             Rule::scene => Some(Item::Scene(self.scene(pair))),
             Rule::kind => self.kind(pair).map(Item::Kind),

@@ -1,0 +1,244 @@
+//! Groups: of so many members, or of people who were seen together; as members who attract each other, or as one body
+//! (Given-Wilson et al. 2017, section 4.2).
+
+use super::behaviour::With;
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::laws::value_span;
+use super::people::{People, moving, start};
+use super::sighting::Sighting;
+use super::symbols::Meaning;
+use crate::base::geometry::Vec2;
+use crate::model::{self, AgentId, Body, Group, Parameter, Particle, Route, Start};
+use crate::syntax::ast::{Field, GroupDecl, Recorded, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use std::sync::Arc;
+
+/// Friction where two particles overlap, kg/(m s), unless the group sets its own: two couples that pass
+/// through each other with an overlap of a metre lose half of their relative speed in about a second.
+const PARTICLE_FRICTION: f64 = 40.0;
+/// Factor of the social force between two particles, unless the group sets its own.
+const PARTICLE_REPULSION: f64 = 0.5;
+
+/// What members of a group have in common.
+struct Common {
+    body: Body,
+    route: Route,
+    attraction: f64,
+    repulsion: f64,
+    friction: f64,
+    /// Whether the group sets the radius, the relaxation time and the speed of its body.
+    own: [bool; 3],
+}
+
+impl Common {
+    /// One body for some persons, who are so far from their middle, m.
+    fn particle(&self, persons: usize, spread: f64) -> Particle {
+        let size = (persons as f64).sqrt();
+        let [radius, tau, _] = self.own;
+        Particle {
+            persons: persons as u32,
+            repulsion: self.repulsion,
+            friction: self.friction,
+            radius_factor: if radius { 1.0 } else { size },
+            spread: if radius { 0.0 } else { spread },
+            tau_factor: if tau { 1.0 } else { size },
+        }
+    }
+}
+
+impl<'a> Elaborator<'a> {
+    /// `group friends[2]: companion as particle { … }`, `groups crowd: adult as particle from hotel at 646.8 s`
+    pub(super) fn group(&mut self, decl: &'a GroupDecl, people: &mut People) {
+        let count = match (&decl.count, &decl.recorded) {
+            (Some(count), None) => self.count(count),
+            (Some(count), Some(_)) => {
+                let said = "the recording determines the number of members";
+                let error = Diagnostic::error(Code::E0402, count.span, said);
+                self.report(error.hint("remove the number in brackets"))
+            }
+            (None, Some(_)) => Ok(0),
+            (None, None) => {
+                let said = format!("the number of members of `{}` is missing", decl.name.name);
+                let error = Diagnostic::error(Code::E0402, decl.name.span, said);
+                self.report(error.hint(format!("write `group {}[2]: …`", decl.name.name)))
+            }
+        };
+        let with = self.with(&decl.name, &decl.with);
+        let common = self.common(decl, people);
+        let (Ok(count), Ok((common, rest, placed))) = (count, common) else {
+            self.define_empty(&decl.name, decl.particle.is_none() || decl.plural, with);
+            return;
+        };
+        if let Some(recorded) = &decl.recorded {
+            self.seen_together(decl, recorded, &common, with, people);
+            return;
+        }
+        if let (Some(span), 0) = (decl.particle, count) {
+            self.note(Diagnostic::error(Code::E0402, span, "a particle needs at least one person"));
+            self.define_empty(&decl.name, false, with);
+            return;
+        }
+        let particle = decl.particle.map(|_| common.particle(count, 0.0));
+        let bodies = if particle.is_some() { 1 } else { count };
+        let body = Arc::new(common.body.clone());
+        let each = |_| (body.clone(), placed.clone(), common.route.clone());
+        let Ok(members) = self.people(&decl.name, bodies, particle.is_none(), people, each) else {
+            self.define_empty(&decl.name, particle.is_none(), with);
+            return;
+        };
+        people.written(&members, &rest, decl.name.span);
+        if particle.is_some() {
+            people.agents[members[0].0 as usize].particle = particle;
+        } else {
+            people.join(&decl.name.name, &members, common.attraction);
+        }
+        self.attach(with, &members);
+        let particle = particle.is_some();
+        self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle });
+    }
+
+    /// The fields of a group: what its members have in common, the fields that are no parameters, and where they start.
+    fn common(
+        &mut self,
+        decl: &'a GroupDecl,
+        people: &mut People,
+    ) -> Lowered<(Common, Vec<&'a Field>, Start)> {
+        let mut kind = self.kind(&decl.kind);
+        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        let start = match &decl.recorded {
+            None => self.start(&decl.name, &rest, people, true),
+            Some(_) => Ok(Start::at_rest(Vec2::zeros())),
+        };
+        let is_onward = decl.recorded.is_some() && !rest.iter().any(|field| field.name.name == "route");
+        let route = if is_onward { Ok(Route::Onward) } else { self.route_of(&rest) };
+        let attraction = self.of_group(&rest, "attraction", Dimension::FORCE, 0.0);
+        let repulsion = self.of_group(&rest, "repulsion", Dimension::NONE, PARTICLE_REPULSION);
+        let friction = self.of_group(&rest, "friction", Dimension::FRICTION, PARTICLE_FRICTION);
+        let forces: &[&str] =
+            if decl.particle.is_some() { &["repulsion", "friction"] } else { &["attraction"] };
+        let places: &[&str] = if decl.recorded.is_some() { &["route"] } else { &["at", "velocity", "route"] };
+        self.only(&rest, &[places, forces].concat());
+        let body = kind.and_then(|kind| {
+            let meaning = kind.base.meaning();
+            if let (Some(at), true) = (decl.particle, kind.base != model::Kind::Sfm) {
+                let error =
+                    Diagnostic::error(Code::E0406, at, format!("{meaning} cannot move `as particle`"));
+                return self.report(error.hint("remove `as particle` to simulate the members"));
+            }
+            if kind.base == model::Kind::Stepped {
+                let said = format!("{meaning} cannot be a group: no force acts on them");
+                let error = Diagnostic::error(Code::E0406, decl.kind.span, said);
+                return self.report(error.hint(format!("write `agents {}[…]`", decl.name.name)));
+            }
+            self.body(&kind, &decl.kind)
+        });
+        let given = |name: &str| decl.body.iter().any(|field| field.name.name == name);
+        let common = Common {
+            body: body?,
+            route: route?,
+            attraction: attraction?,
+            repulsion: repulsion?,
+            friction: friction?,
+            own: ["radius", "tau", "speed"].map(given),
+        };
+        Ok((common, rest, start?))
+    }
+
+    /// A number that a group has.
+    fn of_group(&mut self, rest: &[&Field], name: &str, dimension: Dimension, unset: f64) -> Lowered<f64> {
+        let Some(field) = rest.iter().find(|field| field.name.name == name) else { return Ok(unset) };
+        let Value::Plain(expr) = &field.value else {
+            let place = value_span(&field.value);
+            return self.report(Diagnostic::error(Code::E0305, place, "expected a number"));
+        };
+        let number = self.number_of(expr, dimension, &Locals::default())?;
+        if number.value < 0.0 {
+            let said = format!("`{name}` cannot be negative");
+            return self.report(Diagnostic::error(Code::E0405, expr.span, said));
+        }
+        Ok(number.value)
+    }
+
+    /// Groups of people who were seen: all that are chosen as one group, or one for each group that is found.
+    fn seen_together(
+        &mut self,
+        decl: &'a GroupDecl,
+        recorded: &'a Recorded,
+        common: &Common,
+        with: With<'a>,
+        people: &mut People,
+    ) {
+        let Ok(chosen) = self.sighted(recorded, false) else {
+            self.define_empty(&decl.name, decl.plural || decl.particle.is_none(), with);
+            return;
+        };
+        let placed = self.onto_rims(recorded, chosen.people, &common.body[Parameter::Radius]);
+        let parties: Vec<Vec<Sighting>> = if decl.plural {
+            let at = |one: &Sighting| placed.iter().find(|other| other.id == one.id).copied().unwrap_or(*one);
+            chosen.parties.iter().map(|party| party.iter().map(at).collect()).collect()
+        } else {
+            vec![placed]
+        };
+        if !decl.plural && decl.particle.is_some() && parties[0].is_empty() {
+            self.unseen(&decl.name, common.body.clone(), with, people);
+            return;
+        }
+        let bodies: Vec<(Sighting, Option<Particle>)> = match decl.particle {
+            Some(_) => parties.iter().map(|party| together(party, common)).collect(),
+            None => parties.iter().flatten().map(|one| (*one, None)).collect(),
+        };
+        let is_set = decl.plural || decl.particle.is_none();
+        let each = |k: usize| {
+            let seen: &(Sighting, _) = &bodies[k];
+            (Arc::new(moving(&common.body, &seen.0, common.own[2])), start(&seen.0), common.route.clone())
+        };
+        let Ok(members) = self.people(&decl.name, bodies.len(), is_set, people, each) else {
+            self.define_empty(&decl.name, is_set, with);
+            return;
+        };
+        people.written(&members, &[], recorded.span);
+        for (member, (_, particle)) in members.iter().zip(&bodies) {
+            people.agents[member.0 as usize].particle = *particle;
+        }
+        if decl.particle.is_none() {
+            let mut rest = members.as_slice();
+            for (k, party) in parties.iter().enumerate() {
+                let (own, others) = rest.split_at(party.len());
+                let name = &decl.name.name;
+                let name = if decl.plural { format!("{name}[{}]", k + 1) } else { name.clone() };
+                people.join(&name, own, common.attraction);
+                rest = others;
+            }
+        }
+        self.attach(with, &members);
+        self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle: !is_set });
+    }
+}
+
+impl People {
+    /// Makes agents the members of a group.
+    fn join(&mut self, name: &str, members: &[AgentId], attraction: f64) {
+        let index = self.groups.len() as u32;
+        for member in members {
+            self.agents[member.0 as usize].group = Some(index);
+        }
+        self.groups.push(Group { name: name.to_owned(), members: members.to_vec(), attraction });
+    }
+}
+
+/// People who are seen together as one body: at their mean, with their mean velocity, as wide as they stand.
+fn together(party: &[Sighting], common: &Common) -> (Sighting, Option<Particle>) {
+    let count = party.len() as f64;
+    let mean = |of: fn(&Sighting) -> Vec2| party.iter().map(of).sum::<Vec2>() / count;
+    let position = mean(|one| one.position);
+    let square = party.iter().map(|one| (one.position - position).norm_squared()).sum::<f64>() / count;
+    let sighting = Sighting {
+        id: party[0].id,
+        position,
+        velocity: mean(|one| one.velocity),
+        driving: mean(|one| one.driving),
+    };
+    (sighting, Some(common.particle(party.len(), square.sqrt())))
+}

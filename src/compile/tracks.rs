@@ -1,0 +1,130 @@
+//! Tracks: recordings, and streams of what is observed while it happens. How fast somebody was is told by the last two places of
+//! a track (`seen`) or by the recording (`recorded`): columns of velocities are often central differences, which know the next
+//! place (`crate::data::tracks`).
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::files::{Files, missing};
+use super::laws::value_span;
+use super::sighting::Tracks;
+use super::symbols::{Meaning, unknown};
+use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
+use crate::syntax::ast::{Field, Ident, Text, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeSet;
+
+/// How many bad lines of a file are shown.
+pub(super) const SHOWN_LINES: usize = 10;
+/// The fields of tracks.
+const FIELDS: [&str; 2] = ["velocity", "memory"];
+
+impl<'a> Elaborator<'a> {
+    /// `tracks hotel = eth_biwi "seq_hotel/obsmat.txt" { velocity = seen }`, `tracks here = stream`
+    pub(super) fn tracks(
+        &mut self,
+        name: &'a Ident,
+        file: Option<&'a (Ident, Text)>,
+        body: &'a [Field],
+        files: &Files,
+    ) {
+        let index = self.recordings.len();
+        let fields = self.track_fields(body);
+        let tracks = match (files.seen(&name.name), file) {
+            (Some(seen), _) => fields.map(|(_, memory)| Tracks::Live { seen: seen.clone(), memory }),
+            (None, Some((format, path))) => self.recording(format, path, files).and_then(|recording| {
+                let (velocity, memory) = fields?;
+                let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);
+                Ok(Tracks::Recorded { recording: recording.with(velocity), memory })
+            }),
+            (None, None) => {
+                let said = format!("`{}` is a stream, which only `smc advise` can read", name.name);
+                let error = Diagnostic::error(Code::E0702, name.span, said);
+                self.report(
+                    error.hint("use `smc advise`, or name a file: `tracks hotel = eth_biwi \"obsmat.txt\"`"),
+                )
+            }
+        };
+        self.recordings.push(tracks.ok());
+        self.enter(name, Meaning::Tracks(index));
+    }
+
+    /// `velocity` and `memory`, s.
+    fn track_fields(&mut self, body: &'a [Field]) -> Lowered<(Option<Velocity>, f64)> {
+        let (mut velocity, mut memory, mut failed) = (None, 0.0, false);
+        for (k, field) in body.iter().enumerate() {
+            let (name, at) = (field.name.name.as_str(), value_span(&field.value));
+            if body[..k].iter().any(|before| before.name.name == name) {
+                let said = format!("`{name}` is set twice");
+                self.note(Diagnostic::error(Code::E0202, field.name.span, said));
+                failed = true;
+                continue;
+            }
+            match name {
+                "velocity" => {
+                    velocity = super::call_arguments::word(&field.value).and_then(Velocity::from_name);
+                    if velocity.is_none() {
+                        let error =
+                            Diagnostic::error(Code::E0305, at, "`velocity` must be `seen` or `recorded`");
+                        self.note(error);
+                        failed = true;
+                    }
+                }
+                "memory" => match self.memory(&field.value, at) {
+                    Ok(seconds) => memory = seconds,
+                    Err(Reported) => failed = true,
+                },
+                _ => {
+                    self.note(unknown("field", name, field.name.span, Code::E0207, FIELDS.into_iter()));
+                    failed = true;
+                }
+            }
+        }
+        if failed { Err(Reported) } else { Ok((velocity, memory)) }
+    }
+
+    fn memory(&mut self, value: &'a Value, at: Span) -> Lowered<f64> {
+        let Value::Plain(expr) = value else {
+            return self.report(Diagnostic::error(Code::E0305, at, "expected a time such as `1 s`"));
+        };
+        let number = self.number_of(expr, Dimension::TIME, &Locals::default())?;
+        if number.value < 0.0 {
+            return self.report(Diagnostic::error(Code::E0405, at, "`memory` cannot be negative"));
+        }
+        Ok(number.value)
+    }
+
+    fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
+        let Some(reader) = Format::from_name(&format.name) else {
+            let names: Vec<&str> = Format::all().iter().map(|format| format.name).collect();
+            let hint = format!("the formats are {}", names.join(", "));
+            let error = unknown("format", &format.name, format.span, Code::E0702, names.into_iter());
+            return self.report(if error.hint.is_some() { error } else { error.hint(hint) });
+        };
+        let bytes = match files.get(&path.value) {
+            Ok(bytes) => bytes,
+            Err(reason) => return self.report(missing(path.span, &reason)),
+        };
+        let Ok(text) = std::str::from_utf8(bytes) else {
+            return self.report(Diagnostic::error(Code::E0702, path.span, "the file is not UTF-8 text"));
+        };
+        reader.read(text, &Reading::default()).or_else(|errors| self.report(unreadable(path.span, &errors)))
+    }
+}
+
+/// A file whose lines cannot be read.
+fn unreadable(span: Span, errors: &[LineError]) -> Diagnostic {
+    let shown: Vec<String> = errors.iter().take(SHOWN_LINES).map(ToString::to_string).collect();
+    let more = errors.len().saturating_sub(SHOWN_LINES);
+    let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
+    let title = match errors {
+        [LineError { line: 0, .. }] => "the file is not a recording in this format".to_owned(),
+        [_] => "1 line of this file cannot be read".to_owned(),
+        many => match many.iter().map(|one| one.line).collect::<BTreeSet<_>>().len() {
+            1 => "1 line of this file cannot be read".to_owned(),
+            lines => format!("{lines} lines of this file cannot be read"),
+        },
+    };
+    Diagnostic::error(Code::E0702, span, title).label(format!("{}{rest}", shown.join("; ")))
+}
