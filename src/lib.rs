@@ -31,6 +31,7 @@
 //! [`Draft`] sets parameters and gives files. `examples/` has programs that sweep a parameter, write trajectories, and
 //! drive agents by rules of their own. The modules below are for those who need more; their items may change.
 
+pub mod advise;
 pub mod base;
 #[cfg(feature = "cli")]
 pub mod cli;

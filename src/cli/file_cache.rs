@@ -1,8 +1,8 @@
 //! Where the files of a call come from: from the disk, where those that were opened may be kept; or from another process
 //! that has opened them, so that both compile the same even where a file changes in between.
 
-use super::arguments::Model;
 use super::inputs::load_from;
+use super::values::Model;
 use crate::base::bytes::{Decoder, Encoder, Malformed};
 use crate::library::Inputs;
 use std::collections::VecDeque;

@@ -1,9 +1,9 @@
 //! Files of a call: where they are looked for, and their bytes.
 
-use super::arguments::Model;
 use super::file_cache::FileCache;
+use super::values::Model;
 use crate::engine::outcome::{Finding, Spot};
-use crate::library::{Folder, Inputs, Names, load as compile};
+use crate::library::{Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
@@ -157,6 +157,12 @@ pub(super) struct Loaded {
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
     load_from(FileCache::Files, model, properties)
+}
+
+/// Reads and parses what a call names.
+pub(super) fn parse(model: &Model, properties: &[String]) -> Parsed {
+    let mut disk = Disk { cache: FileCache::Files, model, paths: Vec::new() };
+    read_all(Names { scenario: &model.scenario, properties, settings: &model.set }, &mut disk)
 }
 
 /// The same, with files from a cache.

@@ -1,5 +1,6 @@
 //! Floor 8: the command line. It alone opens files, reads the environment and writes to the terminal.
 
+mod advise;
 mod arguments;
 mod check;
 mod compare_walks;
@@ -10,6 +11,7 @@ mod explain;
 mod file_cache;
 mod format;
 mod gait;
+mod infer;
 mod inputs;
 mod manual;
 mod output;
@@ -19,6 +21,7 @@ mod ranks;
 mod show;
 mod simulate;
 mod terminal;
+mod values;
 mod walk;
 
 use crate::base::visible::visible;
@@ -123,6 +126,8 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Check(command) => check::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
         Command::Path(command) => path::run(command, colors),
+        Command::Advise(command) => advise::run(command, colors),
+        Command::Infer(command) => infer::run(command, colors),
         Command::Gait(command) => gait::run(command, colors),
         Command::Walk(command) => walk::run(command, colors),
         Command::CompareWalks(command) => compare_walks::run(command, colors),

@@ -2,10 +2,11 @@
 //! filtered once, so that every user of the crate sees the same errors.
 
 use super::refusal::refusal;
+use crate::advise::groups;
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, Starts, Study, examine, own_errors, requests};
 use crate::engine::overfull_starts;
-use crate::syntax::ast::{Expr, Item, PropertyItem, ScenarioFile, Values};
+use crate::syntax::ast::{Expr, Item, PropertyFile, PropertyItem, ScenarioFile, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{
@@ -66,12 +67,44 @@ pub struct Inputs {
     pub study: Option<Study>,
 }
 
-/// Reads, parses and compiles what a call names.
-pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
+/// What a call names, read and parsed but not compiled.
+#[derive(Debug, Default)]
+pub struct Parsed {
+    /// Texts, what the parser says of them, and the fingerprints of all files.
+    pub inputs: Inputs,
+    /// The scenario.
+    pub scenario: ScenarioFile,
+    /// Property files.
+    pub properties: Vec<PropertyFile>,
+    /// Values of parameters.
+    pub settings: Vec<Setting>,
+    /// Contents of the files that the scenario names.
+    pub files: Files,
+    /// How many of the texts are files; the others are parts of the call.
+    in_files: usize,
+    /// Whether the scenario has declarations.
+    complete: bool,
+}
+
+impl Parsed {
+    /// What compilation takes.
+    pub fn input(&self) -> Input<'_> {
+        Input {
+            sources: &self.inputs.sources,
+            scenario: &self.scenario,
+            properties: &self.properties,
+            files: &self.files,
+            settings: &self.settings,
+        }
+    }
+}
+
+/// Reads and parses what a call names.
+pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     let mut reader = Reader { folder, inputs: Inputs::default() };
     let mut complete = true;
     let mut scenario = ScenarioFile::default();
-    let mut parsed = Vec::new();
+    let mut properties = Vec::new();
     match reader.source(names.scenario) {
         Some(source) => {
             let (file, diagnostics) = parse_scenario(&source);
@@ -91,13 +124,13 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
         // One that cannot be read was reported; the others are examined without it.
         let Some(source) = reader.source(name) else { continue };
         let (file, diagnostics) = parse_properties(&source);
-        parsed.push(file);
+        properties.push(file);
         let hint = "this is a scenario; write it first and property files after it";
         reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
     }
     let in_files = reader.inputs.sources.len();
     let settings: Vec<Setting> = names.settings.iter().filter_map(|text| reader.setting(text)).collect();
-    let mut files = Files::default();
+    let mut files = Files::grouped_by(groups);
     for request in requests(&scenario) {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {
@@ -105,17 +138,17 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
         }
         files.insert(request.path, contents);
     }
-    let last = names.properties.last().map(|name| reader.folder.shown(name));
-    let mut inputs = reader.inputs;
-    if complete {
-        let input = Input {
-            sources: &inputs.sources,
-            scenario: &scenario,
-            properties: &parsed,
-            files: &files,
-            settings: &settings,
-        };
-        let (study, found) = examined(&input, &inputs.diagnostics, in_files);
+    Parsed { inputs: reader.inputs, scenario, properties, settings, files, in_files, complete }
+}
+
+/// Reads, parses and compiles what a call names.
+pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
+    let parsed = parse(names, folder);
+    let last = names.properties.last().map(|name| folder.shown(name).to_owned());
+    let compiled =
+        parsed.complete.then(|| examined(&parsed.input(), &parsed.inputs.diagnostics, parsed.in_files));
+    let mut inputs = parsed.inputs;
+    if let Some((study, found)) = compiled {
         inputs.diagnostics.extend(found);
         inputs.study = study;
     }
@@ -126,9 +159,9 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
         let title = "internal error: compilation failed without a diagnostic";
         inputs.diagnostics.push(Diagnostic::placeless(Code::E0305, title));
     }
-    if let (Some(study), Some(last)) = (&inputs.study, last)
+    if let (Some(study), Some(last)) = (&inputs.study, &last)
         && study.queries.is_empty()
-        && let Some(source) = inputs.sources.iter().rfind(|source| source.name == last)
+        && let Some(source) = inputs.sources.iter().rfind(|source| source.name == *last)
     {
         let warning = Diagnostic::warning(
             Code::W0602,

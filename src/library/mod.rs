@@ -15,7 +15,7 @@ mod trial;
 mod ways;
 
 pub use diagnostics::Diagnostics;
-pub use front::{Folder, Inputs, Names, load};
+pub use front::{Folder, Inputs, Names, Parsed, load, parse};
 pub use model::{Draft, Model};
 pub use options::{Options, chosen};
 pub use paths::find_paths;

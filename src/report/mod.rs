@@ -4,6 +4,7 @@
 //! `docs/language.md`: the certified statement, the estimate with its interval and the kind of that
 //! interval, all counts, why sampling stopped, and the command that gives the result again.
 
+pub mod advice;
 pub mod behaviours;
 mod escape;
 mod exit;

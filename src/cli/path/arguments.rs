@@ -1,6 +1,6 @@
 //! The options of `smc path`.
 
-use crate::cli::arguments::parse_moment;
+use crate::cli::values::parse_moment;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

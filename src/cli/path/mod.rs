@@ -5,11 +5,11 @@ mod shape;
 
 pub(super) use arguments::PathCommand;
 
-use super::arguments::Model;
 use super::complaint;
 use super::inputs;
 use super::output;
 use super::terminal::{Colors, print, warn};
+use super::values::Model;
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
 use crate::compile::nearest::nearest;

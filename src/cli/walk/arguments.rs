@@ -1,6 +1,6 @@
 //! The options of `smc walk`.
 
-use crate::cli::arguments::Model;
+use crate::cli::values::Model;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

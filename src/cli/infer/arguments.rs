@@ -1,0 +1,95 @@
+//! The options of `smc infer`.
+
+use crate::cli::values::{parse_moment, parse_velocity};
+use crate::data::tracks::{Format, Velocity};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// `smc infer`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct InferCommand {
+    /// Recording or table of observations, or `-` for standard input.
+    pub(super) tracks: String,
+    /// Format of the file; by default what its first line shows.
+    #[arg(long = "input", value_name = "FORMAT", value_parser = parse_format)]
+    pub(super) input: Option<&'static Format>,
+    /// Frames per second of a table with frames.
+    #[arg(long, value_name = "RATE")]
+    pub(super) fps: Option<f64>,
+    /// First time.
+    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    pub(super) from: Option<f64>,
+    /// Last time.
+    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    pub(super) to: Option<f64>,
+    /// Withhold the ids, and use them for the scores alone.
+    #[arg(long)]
+    pub(super) anonymous: bool,
+    /// Annotated groups, one line each, with which the inferred ones are compared.
+    #[arg(long, value_name = "FILE")]
+    pub(super) annotated: Option<String>,
+    /// Velocities: `recorded` (as observed) or `seen` (the difference from the last position).
+    #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
+    pub(super) velocity: Velocity,
+    /// How observations and traces of unequal number are assigned.
+    #[arg(long, value_enum, default_value_t = PaddingRule::Gated)]
+    pub(super) padding: PaddingRule,
+    /// How traces are projected to the time of an observation.
+    #[arg(long, value_enum, default_value_t = MotionModel::Constant)]
+    pub(super) motion: MotionModel,
+    /// Longest time of a projection.
+    #[arg(long, value_name = "TIME", default_value = "2s", value_parser = parse_moment)]
+    pub(super) projection: f64,
+    /// Largest distance of an observation from the projection of its trace, m.
+    #[arg(long, value_name = "METRES", default_value_t = 0.9)]
+    pub(super) threshold: f64,
+    /// Largest distance of a member from the centroid of its group, m.
+    #[arg(long, value_name = "METRES", default_value_t = 0.5)]
+    pub(super) cohesion: f64,
+    /// What positions and velocities are divided by in groups.
+    #[arg(long, num_args = 2, value_names = ["POSITION", "VELOCITY"], default_values_t = [2.0, 1.0])]
+    pub(super) discount: Vec<f64>,
+    /// Seed of the clustering.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Format of the output.
+    #[arg(long, value_enum, default_value_t = InferFormat::Json)]
+    pub(super) format: InferFormat,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// `--padding`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PaddingRule {
+    /// Pairs beyond the threshold are no pairs.
+    Gated,
+    /// As published: dummy entries at the largest distance.
+    Printed,
+}
+
+/// `--motion`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum MotionModel {
+    /// Everybody keeps the velocity.
+    Constant,
+    /// Everybody stands.
+    Standing,
+}
+
+/// Formats of `smc infer`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum InferFormat {
+    /// One object; see docs/schema/infer.schema.json.
+    Json,
+    /// One row for each observation: `time,trace,group,x,y,vx,vy,id`.
+    Csv,
+    /// A picture of traces and groups.
+    Svg,
+}
+
+fn parse_format(text: &str) -> Result<&'static Format, String> {
+    let names: Vec<&str> = Format::all().iter().map(|format| format.name).collect();
+    Format::from_name(text).ok_or_else(|| format!("the formats are {}", names.join(", ")))
+}

@@ -1,0 +1,170 @@
+//! `smc infer`: traces and groups of a recording, or of a table of observations.
+
+mod arguments;
+
+pub(super) use arguments::InferCommand;
+
+use super::complaint;
+use super::inputs;
+use super::output;
+use super::terminal::{Colors, print};
+use crate::base::random::TrialKey;
+use crate::data::tracks::{Batch, Format, LineError, Reading, Velocity, read_groups};
+use crate::perception::{
+    Clustering, ConstantVelocity, Inferring, Motion, Padding, Standing, Tracking, infer,
+};
+use crate::report::ExitCode as Exit;
+use crate::report::infer::{InferredFile, to_csv, to_json, to_svg};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use arguments::{InferFormat, MotionModel, PaddingRule};
+use std::path::PathBuf;
+
+/// Bad lines of a file that are shown.
+const SHOWN: usize = 10;
+
+/// Runs the command.
+pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
+    match answer(arguments) {
+        Ok(()) => Exit::Success,
+        Err(errors) => {
+            complaint::tell_all(&errors, &[], colors);
+            Exit::Wrong
+        }
+    }
+}
+
+fn answer(arguments: &InferCommand) -> Result<(), Vec<Diagnostic>> {
+    let one = |error: Diagnostic| vec![error];
+    let positive = [arguments.projection, arguments.threshold, arguments.cohesion];
+    let divides = arguments.discount.iter().chain(&positive);
+    if divides.copied().any(|value| !(value > 0.0 && value.is_finite())) {
+        let said = "`--projection`, `--threshold`, `--cohesion` and `--discount` must be positive";
+        return Err(one(complaint::argument(said, "write a positive number")));
+    }
+    let files: Vec<PathBuf> = [Some(&arguments.tracks), arguments.annotated.as_ref()]
+        .into_iter()
+        .flatten()
+        .map(PathBuf::from)
+        .collect();
+    output::guard(arguments.output.as_deref(), &files).map_err(one)?;
+    let text = text_of(&arguments.tracks)?;
+    let Some(format) = arguments.input.or_else(|| Format::of(&text)) else {
+        let said = format!("`{}` is in no known format", inputs::shown(&arguments.tracks));
+        return Err(one(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`")));
+    };
+    let reading = Reading { frames_per_second: arguments.fps };
+    let mut batches = format
+        .read_batches(&text, &reading, arguments.velocity)
+        .map_err(|errors| bad_lines(&arguments.tracks, &errors))?;
+    if batches.is_empty() {
+        let said = format!("`{}` contains no observation", inputs::shown(&arguments.tracks));
+        return Err(one(Diagnostic::placeless(Code::E0702, said)));
+    }
+    cut(&mut batches, arguments)?;
+    // A file without velocities leaves only the seen ones.
+    let has_velocities = batches.iter().flat_map(|batch| &batch.seen).any(|one| one.velocity.is_some());
+    let velocity = if has_velocities { arguments.velocity } else { Velocity::Seen };
+    let annotated = match &arguments.annotated {
+        Some(name) => Some(annotated(name, &batches)?),
+        None => None,
+    };
+    let padding = match arguments.padding {
+        PaddingRule::Gated => Padding::Gated,
+        PaddingRule::Printed => Padding::Printed,
+    };
+    let options = Inferring {
+        tracking: Tracking {
+            threshold: arguments.threshold,
+            longest: arguments.projection,
+            padding,
+            ..Tracking::default()
+        },
+        clustering: Clustering {
+            threshold: arguments.cohesion,
+            position_discount: arguments.discount[0],
+            velocity_discount: arguments.discount[1],
+        },
+        key: TrialKey { seed: arguments.seed, ..TrialKey::default() },
+        is_anonymous: arguments.anonymous,
+        longest_gap: None,
+        annotated,
+    };
+    let (mut constant, mut standing) = (ConstantVelocity, Standing);
+    let motion: &mut dyn Motion = match arguments.motion {
+        MotionModel::Constant => &mut constant,
+        MotionModel::Standing => &mut standing,
+    };
+    let name = motion.name();
+    let inference = infer(&batches, &options, motion)
+        .map_err(|error| one(Diagnostic::placeless(Code::E0702, error.to_string())))?;
+    let report = InferredFile {
+        file: inputs::shown(&arguments.tracks),
+        velocity,
+        motion: name,
+        options: &options,
+        inference: &inference,
+    };
+    let text = match arguments.format {
+        InferFormat::Json => to_json(&report),
+        InferFormat::Csv => to_csv(&inference),
+        InferFormat::Svg => to_svg(&report),
+    };
+    match &arguments.output {
+        Some(path) => output::write(path, |out| out.write_all(text.as_bytes())).map_err(|error| {
+            one(complaint::output(format!("`{}` cannot be written: {error}", path.display())))
+        }),
+        None => print(&text).map_err(|reason| one(complaint::output(reason))),
+    }
+}
+
+/// Leaves the batches between two times.
+fn cut(batches: &mut Vec<Batch>, arguments: &InferCommand) -> Result<(), Vec<Diagnostic>> {
+    // Times are sums of steps.
+    let (from, to) = (arguments.from.map(|from| from - 1e-6), arguments.to.map(|to| to + 1e-6));
+    let first = batches.first().map_or(0.0, |batch| batch.time);
+    let last = batches.last().map_or(0.0, |batch| batch.time);
+    batches
+        .retain(|batch| from.is_none_or(|from| batch.time >= from) && to.is_none_or(|to| batch.time <= to));
+    if batches.is_empty() {
+        let said = "there is no observation between `--from` and `--to`";
+        return Err(vec![complaint::argument(said, format!("the file lasts from {first} s to {last} s"))]);
+    }
+    Ok(())
+}
+
+/// Annotated groups; every id must be in the recording.
+fn annotated(name: &str, batches: &[Batch]) -> Result<Vec<Vec<u32>>, Vec<Diagnostic>> {
+    let text = text_of(name)?;
+    read_groups(&text).map_err(|errors| bad_lines(name, &errors)).and_then(|groups| {
+        let known: std::collections::BTreeSet<u32> =
+            batches.iter().flat_map(|batch| &batch.seen).filter_map(|one| one.id).collect();
+        if known.is_empty() || groups.iter().flatten().any(|id| known.contains(id)) {
+            return Ok(groups);
+        }
+        let said = format!("`{}` names nobody who is in the recording", inputs::shown(name));
+        Err(vec![
+            Diagnostic::placeless(Code::E0703, said)
+                .hint("write the ids of the recording, a group on each line"),
+        ])
+    })
+}
+
+fn text_of(name: &str) -> Result<String, Vec<Diagnostic>> {
+    let bytes = inputs::read(name).map_err(|reason| vec![complaint::input(reason)])?;
+    String::from_utf8(bytes).map_err(|_| {
+        vec![Diagnostic::placeless(Code::E0702, format!("`{}` is not UTF-8 text", inputs::shown(name)))]
+    })
+}
+
+fn bad_lines(name: &str, errors: &[LineError]) -> Vec<Diagnostic> {
+    let name = inputs::shown(name);
+    let shown = errors.iter().take(SHOWN);
+    let mut found: Vec<Diagnostic> =
+        shown.map(|error| Diagnostic::placeless(Code::E0702, format!("`{name}`, {error}"))).collect();
+    if errors.len() > SHOWN {
+        let more = format!("`{name}` has {} more errors", errors.len() - SHOWN);
+        found.push(Diagnostic::placeless(Code::E0702, more));
+    }
+    found
+}

@@ -1,0 +1,116 @@
+//! What options of several commands have in common: the model, times, counts and shares.
+
+use crate::data::tracks::Velocity;
+use clap::Args;
+use std::path::PathBuf;
+
+/// The model, and the values set in it.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Model {
+    /// Scenario file (`.scn`), or `-` for standard input.
+    pub(super) scenario: String,
+    /// Set a parameter, or sweep it: `density=0.8`, `density=0.1..0.8 by 0.1`, `n=2,4,8`, `density=0.1..10 by log 3`
+    /// (three values a decade). A number without a unit takes that of the declared default.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Also search this folder for recordings and imports. May be given several times.
+    #[arg(long = "data", value_name = "DIR")]
+    pub(super) data: Vec<PathBuf>,
+}
+
+/// A probability, perhaps as a percentage.
+pub(super) fn parse_share(text: &str) -> Result<f64, String> {
+    let (digits, scale) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
+    let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
+    let share = value / scale;
+    if share > 0.0 && share < 1.0 {
+        Ok(share)
+    } else {
+        Err("a probability must be between 0 and 1".to_owned())
+    }
+}
+
+/// A number of outcomes.
+pub(super) fn parse_quiet(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value > 1.0 && value < 1e300 { Ok(value) } else { Err("the number must be above 1".to_owned()) }
+}
+
+/// A whole number: `20000`, `2e4`.
+pub(super) fn parse_count(text: &str) -> Result<u64, String> {
+    let wrong = || format!("`{text}` is not a whole number: write 10000 or 1e4");
+    let exact = text.parse().ok();
+    let rounded = || text.parse().ok().filter(|n: &f64| *n >= 0.0 && *n <= 9e15 && n.fract() == 0.0);
+    exact.or_else(|| rounded().map(|n| n as u64)).ok_or_else(wrong)
+}
+
+/// A number of seconds, or a time with its unit.
+pub(super) fn parse_moment(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) => Ok(seconds),
+        Err(_) => parse_seconds(text),
+    }
+}
+
+/// A time with its unit: `50ms`, `2s`, `1.5min`, `1h`.
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    let split = text.find(|c: char| c.is_alphabetic()).unwrap_or(text.len());
+    let (digits, unit) = text.split_at(split);
+    let scale = match unit {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        "" if digits.parse::<f64>().is_ok() => {
+            return Err(format!("the unit is missing: write {digits}s, {digits}ms or {digits}min"));
+        }
+        _ => return Err(format!("`{text}` is not a time: write 50ms, 2s, 5min or 1h")),
+    };
+    let value: f64 = digits.trim().parse().map_err(|_| format!("`{digits}` is not a number"))?;
+    Ok(value * scale)
+}
+
+/// A positive duration with its unit.
+pub(super) fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
+    let seconds = parse_seconds(text)?;
+    if seconds >= 1e9 {
+        return Err("a timeout must be shorter than 30 years; remove it for no limit".to_owned());
+    }
+    if seconds.is_nan() || seconds <= 0.0 {
+        return Err("a timeout must be positive".to_owned());
+    }
+    Ok(std::time::Duration::from_secs_f64(seconds))
+}
+
+/// `seen` or `recorded`.
+pub(super) fn parse_velocity(text: &str) -> Result<Velocity, String> {
+    Velocity::from_name(text).ok_or_else(|| "write `seen` or `recorded`".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_need_a_unit() {
+        assert_eq!(parse_duration("50ms"), Ok(std::time::Duration::from_millis(50)));
+        assert_eq!(parse_duration("1.5min"), Ok(std::time::Duration::from_secs(90)));
+        assert!(parse_duration("50").is_err());
+        assert!(parse_duration("0s").is_err());
+        assert!(parse_duration("5 parsecs").is_err());
+        assert_eq!(parse_moment("2s"), Ok(2.0));
+        assert_eq!(parse_moment("-2.5"), Ok(-2.5));
+        assert!(parse_moment("2x").is_err());
+    }
+
+    #[test]
+    fn counts_are_whole() {
+        for (text, count) in [("0", 0), ("1e4", 10_000), ("2.5e3", 2500), ("18446744073709551615", u64::MAX)]
+        {
+            assert_eq!(parse_count(text), Ok(count));
+        }
+        for text in ["1.5", "-1", "1e300", "NaN", "many", ""] {
+            assert!(parse_count(text).is_err(), "{text}");
+        }
+    }
+}
