@@ -1,5 +1,6 @@
 //! The program from the outside: exit codes, formats, inputs of every kind, interruption, traces.
 
+mod advise;
 mod budgets;
 mod calls;
 mod errors;
@@ -7,6 +8,7 @@ mod escapes;
 mod forecasts;
 pub(crate) mod formats;
 mod gait;
+mod infer;
 mod inputs;
 mod limits;
 mod outputs;

@@ -20,9 +20,10 @@ pub(super) fn pairs() -> Vec<Pair> {
     let mut pairs = Vec::new();
     for entry in std::fs::read_dir("models").unwrap() {
         let path = entry.unwrap().path();
-        // Floor plans are beside the models. The five rows of table1 are alike: a slip would count five times.
+        // Floor plans are beside the models. The five rows of table1 are alike: a slip would count five times. The
+        // variants of the hotel are alike, too.
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-        if path.extension().is_none_or(|end| end != "scn") || name == "table1" {
+        if path.extension().is_none_or(|end| end != "scn") || name == "table1" || name.starts_with("hotel-") {
             continue;
         }
         let texts = [

@@ -1,0 +1,168 @@
+//! People who start as they were seen: whom `group of` names, bodies of groups, velocities, and what is refused.
+
+use smc::base::geometry::Vec2;
+use smc::model::{Parameter, Position, Scenario};
+use smc::{Draft, Model};
+use std::sync::Arc;
+
+/// Two who walk east side by side, one who walks west, one who stands; every 0.5 s, with velocities that tell the next place.
+const TABLE: &str = "time,id,x,y,vx,vy\n\
+    0,1,0,0,1.2,0\n0,2,0,0.6,1.2,0\n0,3,9,0,-1,0\n0,4,5,5,0,0\n\
+    0.5,1,0.5,0,1.2,0\n0.5,2,0.5,0.6,1.2,0\n0.5,3,8.5,0,-1,0\n0.5,4,5,5,0,0\n\
+    1,1,1.2,0,1.4,0\n1,2,1.2,0.6,1.4,0\n1,3,8,0,-1,0\n1,4,5,5,0,0\n";
+
+fn text(tracks: &str, people: &str) -> String {
+    format!(
+        "horizon = 2 s\nstep = 0.1 s\ntracks here = csv \"here.csv\" {tracks}\n\
+         kind adult: sfm preset helbing2000 {{ radius = 0.25 m  noise = 0 m/s }}\n{people}\n"
+    )
+}
+
+fn parse(tracks: &str, people: &str) -> Result<Model, smc::Diagnostics> {
+    Draft::new("seen.scn", text(tracks, people)).file("here.csv", TABLE).parse()
+}
+
+fn scenario(tracks: &str, people: &str) -> Arc<Scenario> {
+    parse(tracks, people).unwrap_or_else(|errors| panic!("{errors}")).scenario().clone()
+}
+
+fn refused(tracks: &str, people: &str) -> String {
+    parse(tracks, people).expect_err(people).to_string()
+}
+
+fn place(scenario: &Scenario, agent: usize) -> Vec2 {
+    match scenario.agents[agent].start.position {
+        Position::Point(point) => point,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+fn names(scenario: &Scenario) -> Vec<&str> {
+    scenario.agents.iter().map(|agent| agent.name.as_str()).collect()
+}
+
+#[test]
+fn group_of_names_all_who_walk_together() {
+    let found = scenario(
+        "",
+        "agent user: adult from here at 1 s id 1\n\
+         agents company: adult from here at 1 s group of 1 except 1\n\
+         agents strangers: adult from here at 1 s except group of 2",
+    );
+    assert_eq!(names(&found), ["user", "company[1]", "strangers[1]", "strangers[2]"]);
+    assert_eq!(place(&found, 1), Vec2::new(1.2, 0.6));
+    assert_eq!(place(&found, 2), Vec2::new(8.0, 0.0));
+    // Who walks alone has no company: a set of nobody is legal.
+    let alone = scenario("", "agents company: adult from here at 1 s group of 3 except 3");
+    assert!(alone.agents.is_empty());
+}
+
+#[test]
+fn a_party_is_one_body_at_the_mean_of_its_members() {
+    let found = scenario(
+        "{ velocity = recorded }",
+        "group party: adult as particle from here at 1 s group of 1\n\
+         groups crowd: adult as particle from here at 1 s except group of 1",
+    );
+    assert_eq!(names(&found), ["party", "crowd[1]", "crowd[2]"]);
+    let party = &found.agents[0];
+    assert!((place(&found, 0) - Vec2::new(1.2, 0.3)).norm() < 1e-12);
+    assert!((party.start.velocity - Vec2::new(1.4, 0.0)).norm() < 1e-12);
+    assert_eq!(party.body[Parameter::Speed].constant(), Some(1.4));
+    let particle = party.particle.unwrap();
+    // Both stand 0.3 m from their middle: 0.3 + 0.25 m is more than 0.25 m times the root of 2.
+    assert_eq!(particle.persons, 2);
+    assert!((particle.radius(0.25) - 0.55).abs() < 1e-12);
+    assert!((particle.radius(1.0) - 2.0_f64.sqrt()).abs() < 1e-12);
+    assert_eq!(found.agents[1].particle.unwrap().persons, 1);
+    // A radius of its own is the radius of the body.
+    let own = scenario("", "group party: adult as particle from here at 1 s group of 1 { radius = 0.4 m }");
+    assert_eq!(own.agents[0].particle.unwrap().radius(0.4), 0.4);
+}
+
+#[test]
+fn without_one_body_members_of_each_group_attract_each_other() {
+    let found = scenario("", "groups crowd: adult from here at 1 s { attraction = 30 N }");
+    assert_eq!(names(&found), ["crowd[1]", "crowd[2]", "crowd[3]", "crowd[4]"]);
+    let groups: Vec<(&str, usize)> =
+        found.groups.iter().map(|group| (group.name.as_str(), group.members.len())).collect();
+    assert_eq!(groups, [("crowd[1]", 2), ("crowd[2]", 1), ("crowd[3]", 1)]);
+    let both = scenario("", "group friends: adult from here at 1 s id 1, 3 { attraction = 30 N }");
+    assert_eq!((both.groups.len(), both.groups[0].members.len()), (1, 2));
+}
+
+#[test]
+fn velocities_are_recorded_or_seen_and_remembered() {
+    let speed = |tracks: &str| {
+        let found = scenario(tracks, "agent user: adult from here at 1 s id 1");
+        let start = &found.agents[0].start;
+        (start.velocity.x, start.driving().x)
+    };
+    let near = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).abs() < 1e-12 && (b - d).abs() < 1e-12;
+    assert!(near(speed(""), (1.4, 1.4)));
+    assert!(near(speed("{ velocity = recorded }"), (1.4, 1.4)));
+    // From 0.5 m to 1.2 m in 0.5 s.
+    assert!(near(speed("{ velocity = seen }"), (1.4, 1.4)), "{:?}", speed("{ velocity = seen }"));
+    // The mean of the last second.
+    assert!(near(speed("{ velocity = seen  memory = 1 s }"), (1.4, 1.2)));
+    // The track is not older than a second.
+    assert!(near(speed("{ memory = 9 s }"), (1.4, 1.2)));
+    let first = scenario("{ velocity = seen }", "agent user: adult from here at 0 s id 1");
+    assert_eq!(first.agents[0].start.velocity, Vec2::zeros(), "nobody knows yet how fast it is");
+}
+
+#[test]
+fn whoever_goes_on_keeps_the_remembered_velocity() {
+    let model = parse("{ memory = 1 s }", "agent user: adult from here at 1 s id 1")
+        .unwrap_or_else(|e| panic!("{e}"));
+    let last = model.trial(0, 0).unwrap().last().unwrap();
+    let user = last.agent("user").unwrap();
+    assert!((user.velocity.x - 1.2).abs() < 0.01, "{}", user.velocity);
+}
+
+#[test]
+fn moves_may_belong_to_one_body() {
+    let moves = "moves party for 1 s { heading -30 deg  heading 30 deg  stop }";
+    let party = format!("group party: adult as particle from here at 1 s group of 1\n{moves}");
+    assert_eq!(scenario("", &party).moves[0].options.len(), 3);
+    let many = format!("groups party: adult as particle from here at 1 s\n{moves}");
+    assert!(refused("", &many).contains("moves must belong to one agent"));
+}
+
+#[test]
+fn what_cannot_be_meant_is_refused() {
+    let user = "agent user: adult from here at 1 s id 1";
+    for (tracks, people, said) in [
+        ("{ velocity = fast }", user, "`velocity` must be `seen` or `recorded`"),
+        ("{ memory = -1 s }", user, "`memory` cannot be negative"),
+        ("{ memory = 1 m }", user, "error"),
+        ("{ memry = 1 s }", user, "did you mean `memory`"),
+        ("{ memory = 1 s  memory = 2 s }", user, "`memory` is set twice"),
+        (
+            "",
+            "group party[2]: adult as particle from here at 1 s id 1, 2",
+            "determines the number of members",
+        ),
+        ("", "group party: adult as particle", "the number of members of `party` is missing"),
+        ("", "group party: adult as particle from here at 1 s group of 9", "person 9 was not recorded"),
+        ("", "agents a: adult from here at 1 s id 1, 1", "person 1 is listed twice"),
+        (
+            "",
+            "agents a: adult from here at 1 s group of 1\nagents b: adult from here at 1 s id 2",
+            "person 2 of `here` is already used",
+        ),
+        ("", "group party: adult from here at 1 s id 1, 2 { at = (0, 0) }", "unknown field `at`"),
+    ] {
+        let found = refused(tracks, people);
+        assert!(found.contains(said), "{people}\n{found}");
+    }
+    let stream = "horizon = 2 s\nstep = 0.1 s\ntracks here = stream\nkind adult: sfm preset helbing2000 {}\n\
+                  agent user: adult from here at 0 s id 1";
+    let found = Model::parse(stream).expect_err("a stream").to_string();
+    assert!(found.contains("only `smc advise` can read"), "{found}");
+    let format = "horizon = 2 s\nstep = 0.1 s\ntracks here = trajnett \"here.csv\"\nkind adult: sfm preset helbing2000 {}\n\
+                  agent user: adult from here at 0 s id 1";
+    let found =
+        Draft::new("a.scn", format).file("here.csv", TABLE).parse().expect_err("a format").to_string();
+    assert!(found.contains("did you mean `trajnet`"), "{found}");
+}
