@@ -15,8 +15,8 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
 use smc::model::{
-    Agent, Barrier, Body, Family, Kind, Law, Obstacle, Parameter, Position, Route, Scenario,
-    Scene as Surroundings, Start,
+    Agent, Barrier, Body, Family, Kind, Law, Obstacle, Parameter, Route, Scenario, Scene as Surroundings,
+    Start,
 };
 use std::io::Write;
 use std::sync::Arc;
@@ -164,7 +164,7 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
         name: format!("walker[{}]", k + 1),
         entity: k as u32,
         body: body.clone(),
-        start: Start { position: Position::Point(walker.at), velocity: Vec2::zeros() },
+        start: Start::at_rest(walker.at),
         route: Route::Onward,
         group: None,
         particle: None,
