@@ -67,8 +67,13 @@ impl Place {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
-        Said::of(&child.wait_with_output().unwrap())
+        let mut stdin = child.stdin.take().unwrap();
+        // Beside the reading: a program that answers while it reads waits until somebody takes its answers.
+        let input = input.as_bytes().to_vec();
+        let writer = std::thread::spawn(move || stdin.write_all(&input));
+        let said = Said::of(&child.wait_with_output().unwrap());
+        writer.join().unwrap().unwrap();
+        said
     }
 }
 
