@@ -68,6 +68,8 @@ pub enum Purpose {
     Step = 12,
     /// First centroids of groups of people.
     Group = 13,
+    /// Persons of a resample of the bootstrap.
+    Resample = 14,
     /// Synthetic data and tests.
     Test = 255,
 }

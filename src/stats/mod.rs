@@ -21,7 +21,11 @@
 //! | P far below one in a million | [`splitting`] |
 //! | has P drifted | [`Cusum`] |
 //! | do two samples have one distribution | [`twosample`] |
+//! | how good are predicted probabilities | [`Predictions`], [`BrierScore`], [`Quality`] |
+//! | a statistic of persons, each with many instants | [`Bootstrap`] |
 
+pub mod bootstrap;
+pub mod brier;
 pub mod calibration;
 pub mod counts;
 pub mod cusum;
@@ -33,6 +37,7 @@ mod interval;
 pub mod invalid;
 pub mod mean;
 pub mod procedures;
+pub mod quality;
 pub mod quantile;
 pub mod ranking;
 pub mod sequence;
@@ -43,6 +48,8 @@ pub mod test;
 pub mod twosample;
 mod width;
 
+pub use bootstrap::{Bootstrap, Estimate};
+pub use brier::{BrierScore, Prediction, Predictions};
 pub use counts::{Counts, Outcome};
 pub use cusum::Cusum;
 pub use default_estimator::Levels;
@@ -57,6 +64,7 @@ pub use procedures::{
     Spending, Sprt, ThreeWay, TwoSprt, calibrated, clopper_pearson, eprocess, gbas, massart, okamoto, plan,
     spending, sprt, two_sprt,
 };
+pub use quality::Quality;
 pub use sequential::{Readings, Rule, Sequential};
 pub use spec::{Chosen, Spec};
 pub use test::{Claim, Decision, Hypothesis, Statement, Test, Verdict};
