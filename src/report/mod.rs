@@ -1,4 +1,4 @@
-//! Floor 7: reports of a run, one file per format.
+//! Floor 8: reports of a run, one file per format.
 //!
 //! A report is a function of a [`CallResult`]; no clock and no environment. What a verdict must say follows
 //! `docs/language.md`: the certified statement, the estimate with its interval and the kind of that
@@ -7,6 +7,7 @@
 pub mod advice;
 pub mod behaviours;
 mod escape;
+pub mod evaluate;
 mod exit;
 pub mod forecast;
 pub mod gait;
@@ -16,6 +17,7 @@ pub mod infer;
 pub mod json;
 pub mod junit;
 pub mod model;
+pub mod monitor;
 pub mod number;
 pub mod palette;
 pub mod paths;

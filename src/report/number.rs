@@ -5,6 +5,7 @@
 //! computed one.
 
 use crate::engine::outcome::Interval;
+use crate::stats::Estimate;
 
 /// Below this all numbers of an interval are written with an exponent.
 const SMALL: f64 = 1e-4;
@@ -57,6 +58,14 @@ pub fn interval(value: &Interval, horizon: Option<f64>) -> Printed {
         estimate: show(estimate, Round::Nearest),
         interval: format!("[{}, {}]", show(low, Round::Down), show(high, Round::Up)),
     }
+}
+
+/// Prints an estimate of the bootstrap, a number of units: `94 % [84, 99] %`. Without an interval it has three
+/// significant digits.
+pub fn estimated(found: &Estimate, unit: &str) -> String {
+    let Some([low, high]) = found.interval else { return format!("{}{unit}", rounded(found.value, 2)) };
+    let printed = interval(&Interval { estimate: found.value, low, high }, None);
+    format!("{}{unit} {}{unit}", printed.estimate, printed.interval)
 }
 
 /// Decimal places that an interval supports; `None` where it has no width.
@@ -126,8 +135,12 @@ pub fn plain(x: f64) -> String {
 
 /// A number in four significant digits, without trailing zeros.
 pub fn brief(x: f64) -> String {
-    let rounded = format!("{x:.3e}").parse::<f64>();
-    plain(rounded.unwrap_or(x))
+    rounded(x, 3)
+}
+
+/// A number with so many digits after the first significant one, without trailing zeros.
+fn rounded(x: f64, digits: usize) -> String {
+    plain(format!("{x:.digits$e}").parse().unwrap_or(x))
 }
 
 /// A count with commas: `1,234,567`.

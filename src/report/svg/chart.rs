@@ -9,14 +9,14 @@ use std::fmt::Write as _;
 const SIZE: (f64, f64) = (900.0, 420.0);
 const MARGIN: f64 = 56.0;
 
-/// Colours and dashes of lines, in order.
-const LINES: [&str; 6] = [
-    "stroke=\"#c2410c\" stroke-width=\"2\"",
-    "stroke=\"#1d4e89\" stroke-width=\"2\" stroke-dasharray=\"7 3\"",
-    "stroke=\"#5b8c5a\" stroke-width=\"2\" stroke-dasharray=\"2 3\"",
-    "stroke=\"#000000\" stroke-width=\"1.5\"",
-    "stroke=\"#8a8a8a\" stroke-width=\"1.5\" stroke-dasharray=\"10 4 2 4\"",
-    "stroke=\"#b39ddb\" stroke-width=\"2\" stroke-dasharray=\"4 2\"",
+/// Colours of lines, with their widths and dashes, in order.
+pub(in crate::report) const LINES: [(&str, &str); 6] = [
+    ("#c2410c", "stroke-width=\"2\""),
+    ("#1d4e89", "stroke-width=\"2\" stroke-dasharray=\"7 3\""),
+    ("#5b8c5a", "stroke-width=\"2\" stroke-dasharray=\"2 3\""),
+    ("#000000", "stroke-width=\"1.5\""),
+    ("#8a8a8a", "stroke-width=\"1.5\" stroke-dasharray=\"10 4 2 4\""),
+    ("#b39ddb", "stroke-width=\"2\" stroke-dasharray=\"4 2\""),
 ];
 
 /// Named lines over one number.
@@ -86,7 +86,8 @@ impl Chart {
         );
         for (k, (name, points)) in self.lines.iter().enumerate() {
             let pixels = points.iter().map(|p| at(*p)).map(|(x, y)| format!("{x:.1},{y:.1}"));
-            let style = LINES[k % LINES.len()];
+            let (colour, shape) = LINES[k % LINES.len()];
+            let style = format!("stroke=\"{colour}\" {shape}");
             let y = 16.0 + 14.0 * k as f64;
             let _ = writeln!(
                 body,

@@ -3,7 +3,7 @@
 use crate::report::palette::{Paint, Palette};
 
 /// A cell: a text, how it looks, and to which side it leans.
-pub(super) struct Cell {
+pub(in crate::report) struct Cell {
     text: String,
     paint: Option<Paint>,
     right: bool,
@@ -11,24 +11,24 @@ pub(super) struct Cell {
 
 impl Cell {
     /// Leans to the left.
-    pub(super) fn left(text: impl Into<String>) -> Self {
+    pub(in crate::report) fn left(text: impl Into<String>) -> Self {
         Self { text: text.into(), paint: None, right: false }
     }
 
     /// Leans to the right.
-    pub(super) fn right(text: impl Into<String>) -> Self {
+    pub(in crate::report) fn right(text: impl Into<String>) -> Self {
         Self { right: true, ..Self::left(text) }
     }
 
     /// Looks like this.
-    pub(super) fn paint(self, paint: Paint) -> Self {
+    pub(in crate::report) fn paint(self, paint: Paint) -> Self {
         Self { paint: Some(paint), ..self }
     }
 }
 
 /// Lines of aligned columns, two blanks apart, without blanks at their ends. Columns that are empty in
 /// every row take no room.
-pub(super) fn lines(rows: &[Vec<Cell>], palette: Palette) -> Vec<String> {
+pub(in crate::report) fn lines(rows: &[Vec<Cell>], palette: Palette) -> Vec<String> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width =
         |k: usize| rows.iter().filter_map(|r| r.get(k)).map(|c| c.text.chars().count()).max().unwrap_or(0);
@@ -62,6 +62,16 @@ pub(super) fn lines(rows: &[Vec<Cell>], palette: Palette) -> Vec<String> {
             line
         })
         .collect()
+}
+
+/// Lines of a table with heads. The first column leans to the left, all others to the right.
+pub(in crate::report) fn table<const N: usize>(heads: [&str; N], rows: Vec<[String; N]>) -> Vec<String> {
+    let cells = |row: [String; N]| -> Vec<Cell> {
+        let cell = |(k, text): (usize, String)| if k == 0 { Cell::left(text) } else { Cell::right(text) };
+        row.into_iter().enumerate().map(cell).collect()
+    };
+    let rows: Vec<Vec<Cell>> = [heads.map(str::to_owned)].into_iter().chain(rows).map(cells).collect();
+    lines(&rows, Palette::PLAIN)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A report for people: one block per query, a summary, and the command that gives it again.
 
 mod block;
-mod columns;
+pub(super) mod columns;
 mod compare;
 mod distribution;
 mod rank;

@@ -1,0 +1,148 @@
+//! Evaluated predictions for people.
+
+use super::{CONSTANT, Evaluated, EvaluatedKind, EvaluatedProperty};
+use crate::report::number::{count, counted, estimated, plain};
+use crate::report::text::columns::table;
+use crate::stats::{Estimate, Quality};
+use std::fmt::Write as _;
+
+/// Tables for each property, and one of distances.
+pub fn to_text(report: &Evaluated) -> String {
+    let mut out = String::new();
+    let velocity = report.velocity.name();
+    let files = report.properties.join(", ");
+    let _ = writeln!(out, "{} ({velocity} velocities), {}, {files}", report.recording, report.model);
+    let _ = writeln!(
+        out,
+        "{} of {} faster than {} m/s, every {} s; horizon {} s",
+        counted(report.instants, "instant"),
+        counted(report.persons, "person"),
+        plain(report.moving),
+        plain(report.every),
+        plain(report.horizon)
+    );
+    let _ = writeln!(out, "{} an instant, seed {}", counted(report.trials, "trial"), report.seed);
+    for name in report.names() {
+        let kinds: Vec<_> = report.of(name).collect();
+        let _ = writeln!(out, "\n{name}");
+        scores(&mut out, &kinds);
+        for (kind, property) in &kinds {
+            if let Some(skill) = property.quality.as_ref().and_then(|quality| quality.skill_over_other) {
+                let _ = writeln!(out, "  {}: {}", kind.name, compared(&skill));
+            }
+        }
+        terms(&mut out, &kinds);
+    }
+    distances(&mut out, &report.kinds);
+    let _ = writeln!(
+        out,
+        "\nBrier score: mean squared difference of probability and outcome; 0 is best.\n\
+         Skill: 1 - Brier score / Brier score of the base rate; 1 is best, 0 is as good as the base rate.\n\
+         Terms: Brier score = reliability - resolution + uncertainty + variance - 2 covariance, the last two in bins.\n\
+         Brackets: {} % intervals (bootstrap over persons).",
+        plain(100.0 * report.confidence)
+    );
+    out
+}
+
+/// How much better than the kind `constant`.
+fn compared(skill: &Estimate) -> String {
+    let percent = Estimate {
+        value: 100.0 * skill.value,
+        interval: skill.interval.map(|ends| ends.map(|end| 100.0 * end)),
+    };
+    let say = |found: &Estimate| format!("{} of the Brier score", estimated(found, " %"));
+    match percent.interval {
+        Some([low, high]) if high < 0.0 => {
+            let worse = Estimate { value: -percent.value, interval: Some([-high, -low]) };
+            format!("worse than {CONSTANT} by {}", say(&worse))
+        }
+        Some([low, _]) if low > 0.0 => format!("better than {CONSTANT} by {}", say(&percent)),
+        Some(_) => format!("not clearly different from {CONSTANT}: {}", say(&percent)),
+        None if percent.value < 0.0 => {
+            let worse = Estimate { value: -percent.value, ..percent };
+            format!("worse than {CONSTANT} by {}, without an interval", say(&worse))
+        }
+        None => format!("better than {CONSTANT} by {}, without an interval", say(&percent)),
+    }
+}
+
+/// Indented lines of a table.
+fn write<const N: usize>(out: &mut String, heads: [&str; N], rows: Vec<[String; N]>) {
+    for line in table(heads, rows) {
+        let _ = writeln!(out, "  {line}");
+    }
+}
+
+fn maybe(estimate: Option<&Estimate>) -> String {
+    estimate.map_or_else(|| "-".to_owned(), |found| estimated(found, ""))
+}
+
+fn scores(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
+    let rows = kinds.iter().map(|(kind, property)| {
+        let quality = property.quality.as_ref();
+        [
+            kind.name.clone(),
+            count(quality.map_or(0, |quality| quality.score.count)),
+            count(property.unresolved),
+            maybe(quality.map(|quality| &quality.brier)),
+            maybe(quality.and_then(|quality| quality.skill.as_ref())),
+            maybe(quality.map(|quality| &quality.calibration_error)),
+        ]
+    });
+    let heads = ["kind", "predictions", "unresolved", "Brier score", "skill", "calibration error"];
+    write(out, heads, rows.collect());
+}
+
+/// The terms of the Brier score.
+fn terms(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
+    let row = |kind: &EvaluatedKind, quality: &Quality| {
+        let score = &quality.score;
+        let terms = [
+            score.base_rate,
+            score.reliability,
+            score.resolution,
+            score.uncertainty,
+            score.within_bin_variance,
+            score.within_bin_covariance,
+        ];
+        let [a, b, c, d, e, f] = terms.map(|term| format!("{:.3}", (1e3 * term).round() / 1e3 + 0.0));
+        [kind.name.clone(), a, b, c, d, e, f]
+    };
+    let rows: Vec<_> = kinds
+        .iter()
+        .filter_map(|(kind, property)| property.quality.as_ref().map(|quality| row(kind, quality)))
+        .collect();
+    if !rows.is_empty() {
+        let heads =
+            ["terms", "base rate", "reliability", "resolution", "uncertainty", "variance", "covariance"];
+        write(out, heads, rows);
+    }
+}
+
+/// Distances of predicted from walked paths.
+fn distances(out: &mut String, kinds: &[EvaluatedKind]) {
+    let rows = kinds.iter().filter_map(|kind| {
+        let found = kind.displacement.as_ref()?;
+        Some([
+            kind.name.clone(),
+            maybe(found.mean_ade.as_ref()),
+            maybe(found.mean_fde.as_ref()),
+            maybe(found.best_ade.as_ref()),
+            maybe(found.best_fde.as_ref()),
+            maybe(found.collisions.as_ref()),
+        ])
+    });
+    let rows: Vec<_> = rows.collect();
+    let Some(found) = kinds.iter().find_map(|kind| kind.displacement) else { return };
+    let _ = writeln!(
+        out,
+        "\ndistances (m) of the mean path and of the best of {}",
+        counted(found.best_of, "path")
+    );
+    write(out, ["kind", "mean ADE", "mean FDE", "best ADE", "best FDE", "collision rate"], rows);
+    let _ = writeln!(
+        out,
+        "  ADE: mean over all times; FDE: at the end; collision rate: share of paths that touch somebody"
+    );
+}
