@@ -44,6 +44,7 @@ pub mod library;
 pub mod logic;
 pub mod model;
 pub mod perception;
+pub mod replay;
 pub mod report;
 pub mod route;
 pub mod stats;

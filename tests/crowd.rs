@@ -112,7 +112,12 @@ impl Crowd {
             name: format!("person[{}]", k + 1),
             entity: 100 + k as u32,
             body: Arc::new(Body::new(Kind::Sfm, |parameter| Law::Constant(person.value(parameter)))),
-            start: Start { position: Position::Point(person.at), velocity: person.velocity, driving: None },
+            start: Start {
+                position: Position::Point(person.at),
+                velocity: person.velocity,
+                driving: None,
+                seen: Vec::new(),
+            },
             route: Route::Onward,
             group: None,
             particle: person.particle,

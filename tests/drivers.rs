@@ -41,7 +41,12 @@ fn agent(k: u32, at: Vec2, noise: f64) -> Agent {
         name: format!("person[{k}]"),
         entity: 40 + k,
         body: Arc::new(body),
-        start: Start { position: Position::Point(at), velocity: p(0.0, 0.0), driving: None },
+        start: Start {
+            position: Position::Point(at),
+            velocity: p(0.0, 0.0),
+            driving: None,
+            seen: Vec::new(),
+        },
         route: Route::Legs {
             legs: vec![Leg::To(Goal::Point(p(6.0, 0.0))), Leg::To(Goal::Region(RegionId(0)))],
             then_leave: false,

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 /// The floors, from the ground.
-const FLOORS: [&[&str]; 10] = [
+const FLOORS: [&[&str]; 11] = [
     &["base"],
     &["syntax", "model", "logic", "stats", "data"],
     &["compile", "kernel"],
@@ -13,6 +13,7 @@ const FLOORS: [&[&str]; 10] = [
     &["gait"],
     &["engine"],
     &["advise"],
+    &["replay"],
     &["report"],
     &["library"],
     &["cli"],

@@ -16,4 +16,4 @@ pub use advice::{Advice, GroupSeen, OptionSeen, Place, Status, UserSeen, Walked}
 pub use adviser::{Adviser, Advising};
 pub use cycle::Cycles;
 pub use grouping::groups;
-pub use role::{Role, role};
+pub use role::{Role, id, role};

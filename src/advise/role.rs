@@ -63,7 +63,8 @@ fn of(moves: &MovesDecl, recorded: &Recorded) -> Result<Role, Diagnostic> {
     }
 }
 
-fn id(expr: &Expr) -> Option<u32> {
+/// The id of a person, written as a number.
+pub fn id(expr: &Expr) -> Option<u32> {
     match &expr.kind {
         ExprKind::Quantity(quantity) if quantity.unit.is_none() => {
             let value = quantity.value.to_f64();

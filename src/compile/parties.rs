@@ -199,8 +199,12 @@ impl<'a> Elaborator<'a> {
             return;
         };
         people.written(&members, &[], recorded.span);
-        for (member, (_, particle)) in members.iter().zip(&bodies) {
-            people.agents[member.0 as usize].particle = *particle;
+        for (k, (member, (_, particle))) in members.iter().zip(&bodies).enumerate() {
+            let agent = &mut people.agents[member.0 as usize];
+            agent.particle = *particle;
+            if particle.is_some() {
+                agent.start.seen = parties[k].iter().map(|one| one.id).collect();
+            }
         }
         if decl.particle.is_none() {
             let mut rest = members.as_slice();

@@ -354,5 +354,5 @@ pub(super) fn moving(body: &Body, seen: &Sighting, own_speed: bool) -> Body {
 /// The start of somebody who was seen.
 pub(super) fn start(seen: &Sighting) -> Start {
     let driving = (seen.driving != seen.velocity).then_some(seen.driving);
-    Start { position: Position::Point(seen.position), velocity: seen.velocity, driving }
+    Start { position: Position::Point(seen.position), velocity: seen.velocity, driving, seen: vec![seen.id] }
 }

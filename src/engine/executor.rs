@@ -10,6 +10,7 @@ use super::prepared::PreparedWorld;
 use super::runner::Runner;
 use crate::base::lanes::LANES;
 use crate::logic::Invalid;
+use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
@@ -200,6 +201,11 @@ impl Threads {
         let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let threads = threads.unwrap_or_else(cores).max(1);
         Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()? })
+    }
+
+    /// What `work` makes of each item, in their order.
+    pub fn map<T: Sync, R: Send>(&self, items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+        self.pool.install(|| items.par_iter().map(&work).collect())
     }
 }
 

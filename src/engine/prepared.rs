@@ -251,7 +251,7 @@ impl PreparedWorld {
     }
 
     /// The atoms and signals that some columns use, others as constants.
-    fn observed(&self, columns: &[usize]) -> (Vec<Bool>, Vec<Num>) {
+    pub(super) fn observed(&self, columns: &[usize]) -> (Vec<Bool>, Vec<Num>) {
         let (used_atoms, used_signals) = self.leaves(columns);
         let mut atoms = vec![Bool::Constant(false); self.atoms.len()];
         for atom in used_atoms {

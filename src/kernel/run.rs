@@ -9,11 +9,13 @@ use super::dynamics::{self, Scratch};
 use super::process;
 use super::program::Program;
 use super::start::{self, Loaded};
-use super::state::State;
-use super::{Close, Layout};
+use super::state::{Slot, State};
+use super::{Close, Layout, driver};
+use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
+use crate::model::AgentId;
 use std::borrow::Cow;
 
 /// The address of a trial.
@@ -104,6 +106,47 @@ impl<'p> Run<'p> {
         let loaded = self.load(0, address)?;
         self.begin(Mask::lane(0));
         Ok(loaded)
+    }
+
+    /// A trial alone whose states are given one by one ([`Run::show`]), with the parameters of a key.
+    ///
+    /// # Errors
+    /// When a law draws no number with which somebody can move.
+    pub fn given(program: &'p Program, key: TrialKey) -> Result<Self, start::Fault> {
+        let mut run = Self::new(program);
+        start::load_absent(program, &mut run.state, key)?;
+        Ok(run)
+    }
+
+    /// Puts everybody of a trial alone where `seen` says, position in m and velocity in m/s; who is not seen is absent. Ways
+    /// and legs go on from the state before, which belongs to the tick before.
+    pub fn show(&mut self, tick: u64, mut seen: impl FnMut(AgentId) -> Option<(Vec2, Vec2)>) {
+        self.state.ticks[0] = tick;
+        let all: Vec<_> = (0..self.state.agents).map(|agent| seen(AgentId(agent as u32))).collect();
+        for (agent, shown) in all.iter().enumerate() {
+            let slot = self.state.slot(agent, 0);
+            let Slot { block, lane } = slot;
+            let was_there = self.state.present[block].has(lane);
+            let Some((position, _)) = *shown else {
+                self.state.present[block] &= !Mask::lane(lane);
+                continue;
+            };
+            let motion = &mut self.state.motion;
+            let last = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
+            motion.travelled[block].0[lane] += if was_there { (position - last).norm() } else { 0.0 };
+            (motion.x[block].0[lane], motion.y[block].0[lane]) = (position.x, position.y);
+            self.state.present[block] |= Mask::lane(lane);
+        }
+        driver::steer(&self.program.drive, &mut self.state);
+        // Steering turns velocities and lets those go who have arrived: here the recording decides.
+        for (agent, shown) in all.into_iter().enumerate() {
+            let Slot { block, lane } = self.state.slot(agent, 0);
+            if let Some((_, velocity)) = shown {
+                let motion = &mut self.state.motion;
+                (motion.vx[block].0[lane], motion.vy[block].0[lane]) = (velocity.x, velocity.y);
+                self.state.present[block] |= Mask::lane(lane);
+            }
+        }
     }
 
     /// A trial alone that continues from one of its states.

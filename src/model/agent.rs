@@ -112,12 +112,19 @@ pub struct Start {
     pub velocity: Vec2,
     /// The velocity that it wants, m/s, where it goes on as it started; `None` for that with which it starts.
     pub driving: Option<Vec2>,
+    /// Ids of the people who were seen there; none where the start is declared.
+    pub seen: Vec<u32>,
 }
 
 impl Start {
     /// At a point, standing.
     pub const fn at_rest(point: Vec2) -> Self {
-        Self { position: Position::Point(point), velocity: Vec2::new(0.0, 0.0), driving: None }
+        Self {
+            position: Position::Point(point),
+            velocity: Vec2::new(0.0, 0.0),
+            driving: None,
+            seen: Vec::new(),
+        }
     }
 
     /// The velocity that whoever goes on wants, m/s.

@@ -28,7 +28,7 @@ impl Span {
 }
 
 /// One source text and its name as the user wrote it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Its number within the call.
     pub id: SourceId,

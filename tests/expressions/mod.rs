@@ -56,7 +56,12 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         name: format!("a{k}"),
         entity: k as u32,
         body: Arc::clone(&body),
-        start: Start { position: Position::Point(p(0.0, 0.0)), velocity: p(0.0, 0.0), driving: None },
+        start: Start {
+            position: Position::Point(p(0.0, 0.0)),
+            velocity: p(0.0, 0.0),
+            driving: None,
+            seen: Vec::new(),
+        },
         route: Route::Onward,
         group: None,
         particle: None,

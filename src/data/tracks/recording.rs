@@ -177,18 +177,26 @@ impl Recording {
     /// proportion between the two frames of the same person around it. Nobody is present before the first
     /// or after the last frame of a track, nor in a hole of it longer than the usual step.
     pub fn at(&self, time: f64) -> Vec<PersonState> {
-        let Some(&first) = self.frames.first() else { return Vec::new() };
-        let mut frame = f64::from(first) + (time - self.clock.start) / self.clock.seconds_per_frame;
+        let Some(frame) = self.frame_at(time) else { return Vec::new() };
+        self.people.iter().filter_map(|person| self.seen(person, frame)).collect()
+    }
+
+    /// One person at a time in seconds, as [`Recording::at`] has everybody.
+    pub fn person_at(&self, id: u32, time: f64) -> Option<PersonState> {
+        self.seen(self.person(id)?, self.frame_at(time)?)
+    }
+
+    /// The frame of a time, s: an annotated one where one is near, else a share of the way between two.
+    fn frame_at(&self, time: f64) -> Option<f64> {
+        let frame =
+            f64::from(*self.frames.first()?) + (time - self.clock.start) / self.clock.seconds_per_frame;
         if !frame.is_finite() {
-            return Vec::new();
+            return None;
         }
         let after = self.frames.partition_point(|&annotated| f64::from(annotated) < frame - SAME_FRAME);
         let around = self.frames[after..].iter().map(|&annotated| f64::from(annotated)).take(2);
         let nearest = around.min_by(|a, b| (a - frame).abs().total_cmp(&(b - frame).abs()));
-        if let Some(annotated) = nearest.filter(|annotated| (annotated - frame).abs() <= SAME_FRAME) {
-            frame = annotated;
-        }
-        self.people.iter().filter_map(|person| self.seen(person, frame)).collect()
+        Some(nearest.filter(|annotated| (annotated - frame).abs() <= SAME_FRAME).unwrap_or(frame))
     }
 
     fn seen(&self, person: &Person, frame: f64) -> Option<PersonState> {

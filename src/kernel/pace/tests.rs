@@ -25,6 +25,7 @@ fn scenario(speed: Law, noise: Law, changes: Vec<(Parameter, Amount)>) -> Scenar
             position: Position::Point(Vec2::new(0.0, 0.0)),
             velocity: Vec2::new(0.3, 0.4),
             driving: None,
+            seen: Vec::new(),
         },
         route: Route::Legs { legs: vec![Leg::Wait(Law::Constant(1.0))], then_leave: false },
         group: None,

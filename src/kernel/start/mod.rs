@@ -23,6 +23,7 @@ use super::driver;
 use super::plan::Occasion;
 use super::program::Program;
 use super::state::{Layout, State};
+use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::model::{AgentId, Parameter};
@@ -75,6 +76,19 @@ pub fn load(
     entrance::open(program, state, lane);
     driver::ask(&program.drive, state);
     Ok(placed.counts)
+}
+
+/// Loads a state that is given from outside into lane 0: everybody has drawn parameters and begins a route, and nobody is
+/// there yet.
+pub fn load_absent(program: &Program, state: &mut State, key: TrialKey) -> Result<(), Fault> {
+    begin(program, state, 0, key);
+    for k in 0..program.scenario.agents.len() {
+        let body = program.parameters.draw((AgentId(k as u32), 0), key)?;
+        enter(program, state, (k, 0), (Occasion::Begins, None), &body, Vec2::zeros());
+        let slot = state.slot(k, 0);
+        state.present[slot.block] &= !Mask::lane(slot.lane);
+    }
+    Ok(())
 }
 
 /// The trial itself and its processes.

@@ -1,0 +1,197 @@
+//! Predictions of a model against what happened: probabilities of properties, and ways.
+//!
+//! At each instant at which somebody moves and whose next seconds are recorded, trials of the model begin with those who are
+//! there. The share of them in which a property holds is compared with whether it held in the recording.
+
+use super::course::{Beyond, course};
+use super::displacement::Displacement;
+use super::instants::Instant;
+use super::kinds::{CONSTANT, with_kind};
+use super::monitor::happened;
+use super::situation::{Replay, is_of_a_place};
+use crate::base::geometry::Vec2;
+use crate::base::tick::Tick;
+use crate::compile::study::World;
+use crate::engine::cell::{Reading, Series};
+use crate::engine::sample::{Followed, sample};
+use crate::engine::{PreparedWorld, Threads};
+use crate::kernel::driver::MakeDrivers;
+use crate::model::{AgentId, Parameter};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::SourceId;
+
+/// Displacements are those of so many seconds, or of the horizon if that is shorter.
+pub const PREDICTED: f64 = 4.8;
+
+/// Options of an evaluation.
+#[derive(Clone, Debug)]
+pub struct Evaluating {
+    /// Trials of each instant.
+    pub trials: u64,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// What is taken of others after the end of their tracks.
+    pub beyond: Beyond,
+}
+
+/// A probability and what happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// When, and for whom.
+    pub instant: Instant,
+    /// Share of the trials in which the property held.
+    pub probability: f64,
+    /// Whether it held in the recording.
+    pub happened: bool,
+}
+
+/// Predictions of one kind.
+#[derive(Clone, Debug, Default)]
+pub struct Predicted {
+    /// For each property its predictions; an instant at which the recording does not tell is none.
+    pub predictions: Vec<Vec<Prediction>>,
+    /// For each property the instants at which the recording or no trial tells.
+    pub unresolved: Vec<u64>,
+    /// Displacements.
+    pub displacements: Vec<Displacement>,
+}
+
+/// What one instant yields: for each property a probability and what happened.
+type Row = (Vec<Option<(f64, bool)>>, Option<Displacement>);
+
+/// The instants at which the user moves, was there at the last instant before, and is there for `seconds` from then on.
+pub fn eligible(
+    replay: &Replay,
+    instants: Vec<Instant>,
+    every: f64,
+    speed: f64,
+    seconds: f64,
+) -> Vec<Instant> {
+    let is_there = |instant: &Instant, time: f64| replay.recording.person_at(instant.person, time).is_some();
+    let moves = |instant: &Instant| {
+        let now = replay.recorded.person_at(instant.person, instant.time);
+        now.is_some_and(|now| now.velocity.norm() > speed)
+    };
+    let lasts = |instant: &Instant| {
+        let steps = (seconds / every).round() as u64;
+        (1..=steps).all(|k| is_there(instant, instant.time + k as f64 * every))
+    };
+    let mut kept = instants;
+    kept.retain(|instant| moves(instant) && is_there(instant, instant.time - every) && lasts(instant));
+    kept
+}
+
+/// The predictions of a kind at some instants.
+///
+/// # Errors
+/// What is wrong with the model.
+pub fn evaluate(
+    replay: &Replay,
+    kind: &str,
+    instants: &[Instant],
+    options: &Evaluating,
+    (threads, drivers): (&Threads, &MakeDrivers),
+) -> Result<Predicted, Vec<Diagnostic>> {
+    let id = SourceId(replay.sources.len() as u16);
+    let (scenario, source) = with_kind(&replay.scenario, kind, id).map_err(|error| vec![error])?;
+    let mut own = replay.clone();
+    own.scenario = scenario;
+    own.sources.extend(source);
+    // Without any random number one trial says all.
+    let trials = if kind == CONSTANT { 1 } else { options.trials };
+    let numbered: Vec<(u64, Instant)> = (0..).zip(instants.iter().copied()).collect();
+    let one = |(number, instant): &(u64, Instant)| -> Result<Row, Vec<Diagnostic>> {
+        let study = match own.study_at(*instant) {
+            Ok(study) => study,
+            Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => {
+                return Ok((vec![None; own.formulas.names.len()], None));
+            }
+            Err(errors) => return Err(errors),
+        };
+        let targets = own.formulas.targets(&study);
+        let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
+        let Some(target) = targets.first() else { return Ok((Vec::new(), None)) };
+        let (Some(world), Some(prepared)) =
+            (study.worlds.get(target.world), PreparedWorld::of(&study, target.world, options.seed, drivers))
+        else {
+            return Ok((Vec::new(), None));
+        };
+        let truths = happened(&own, *instant, (world, &columns), options.beyond);
+        let series = Series { seed: options.seed, branch: (number & 0xffff) as u16 };
+        Ok(predict(&own, *instant, (world, &prepared), (&columns, &truths), (series, trials)))
+    };
+    let rows: Vec<Row> = threads.map(&numbered, one).into_iter().collect::<Result<_, _>>()?;
+    let count = own.formulas.names.len();
+    let mut all = Predicted {
+        predictions: vec![Vec::new(); count],
+        unresolved: vec![0; count],
+        displacements: rows.iter().filter_map(|(_, displacement)| *displacement).collect(),
+    };
+    for (instant, (row, _)) in instants.iter().zip(&rows) {
+        for (k, cell) in row.iter().enumerate() {
+            match cell {
+                Some((probability, happened)) => all.predictions[k].push(Prediction {
+                    instant: *instant,
+                    probability: *probability,
+                    happened: *happened,
+                }),
+                None => all.unresolved[k] += 1,
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Trials from one instant on, beside what happened.
+fn predict(
+    replay: &Replay,
+    instant: Instant,
+    (world, prepared): (&World, &PreparedWorld),
+    (columns, truths): (&[usize], &[Option<bool>]),
+    (series, trials): (Series, u64),
+) -> Row {
+    let agents = &world.scenario.agents;
+    let own = agents.iter().position(|agent| agent.start.seen.contains(&replay.user())).unwrap_or(0);
+    let (every, dt) = (replay.recording.step(), prepared.program.dt);
+    let last = PREDICTED.min(world.scenario.clock.seconds(Tick(prepared.horizon.0)));
+    let times: Vec<f64> = (1..=(last / every + 1e-9).floor() as u64).map(|k| k as f64 * every).collect();
+    let ticks: Vec<u64> = times.iter().map(|time| (time / dt).round() as u64).collect();
+    let followed = Followed { agent: AgentId(own as u32), ticks: &ticks };
+    let Ok(found) = sample(prepared, columns, series, trials, followed) else {
+        return (vec![None; columns.len()], None);
+    };
+    let share = |column: usize| {
+        let known = found.readings.iter().filter_map(|row| match row.get(column) {
+            Some(Reading::Truth(truth)) => Some(*truth),
+            _ => None,
+        });
+        let (held, count) = known.fold((0u64, 0u64), |(held, all), truth| (held + u64::from(truth), all + 1));
+        (count > 0).then(|| held as f64 / count as f64)
+    };
+    let cells = (0..columns.len()).map(|k| share(k).zip(truths.get(k).copied().flatten())).collect();
+    (
+        cells,
+        displacement(replay, instant, &times, &found.paths, 2.0 * agents[own].body[Parameter::Radius].mean()),
+    )
+}
+
+/// Distances of ways from the recorded one.
+fn displacement(
+    replay: &Replay,
+    instant: Instant,
+    times: &[f64],
+    ways: &[Vec<Vec2>],
+    reach: f64,
+) -> Option<Displacement> {
+    let at =
+        |id: u32, time: f64| course(&replay.recording, id, time, Beyond::Unresolved).map(|(place, _)| place);
+    let whole: Option<Vec<Vec2>> = times.iter().map(|time| at(instant.person, instant.time + time)).collect();
+    let others: Vec<Vec<Vec2>> = times
+        .iter()
+        .map(|time| {
+            let now = replay.recording.at(instant.time + time);
+            now.iter().filter(|one| one.id != instant.person).map(|one| one.position).collect()
+        })
+        .collect();
+    Displacement::of(instant.person, ways, &whole?, (&others, reach))
+}

@@ -1,0 +1,74 @@
+//! The same model with people of another kind.
+
+use super::situation::Replay;
+use crate::compile::presets::PRESETS;
+use crate::syntax::ast::{Item, ScenarioFile};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::parse::parse_scenario;
+use crate::syntax::source::{Source, SourceId};
+
+/// The kind without forces: everybody keeps the velocity.
+pub const CONSTANT: &str = "constant";
+
+/// A scenario all of whose people have the kind of a name: one that it declares, a preset or the beginning of the name of
+/// one, or `constant`. Where the kind is not declared, its text is a source of its own.
+///
+/// # Errors
+/// Where there is no such kind.
+pub(super) fn with_kind(
+    file: &ScenarioFile,
+    name: &str,
+    id: SourceId,
+) -> Result<(ScenarioFile, Option<Source>), Diagnostic> {
+    let mut changed = file.clone();
+    let declared: Vec<&str> = (file.items.iter())
+        .filter_map(|item| if let Item::Kind(kind) = item { Some(kind.name.name.as_str()) } else { None })
+        .collect();
+    let added = match (declared.contains(&name), preset(name)) {
+        (true, _) => None,
+        (false, _) if name == CONSTANT => Some(format!(
+            "kind {name}: sfm preset helbing2000 {{ A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)  noise = 0 m/s }}\n"
+        )),
+        (false, Some(preset)) => Some(format!("kind {name}: sfm preset {preset} {{ }}\n")),
+        (false, None) => {
+            let presets = PRESETS.iter().map(|preset| preset.name);
+            let known: Vec<&str> = declared.into_iter().chain(presets).chain([CONSTANT]).collect();
+            let said = format!("`--kinds {name}`: there is no such kind");
+            return Err(
+                Diagnostic::placeless(Code::E0705, said).hint(format!("the kinds are {}", known.join(", ")))
+            );
+        }
+    };
+    let source = added.map(|text| Source::new(id, format!("--kinds {name}"), text));
+    if let Some(source) = &source {
+        let (kind, _) = parse_scenario(source);
+        changed.items.splice(0..0, kind.items);
+    }
+    for item in &mut changed.items {
+        match item {
+            Item::Agents(decl) if decl.recorded.is_some() => name.clone_into(&mut decl.kind.name),
+            Item::Group(decl) if decl.recorded.is_some() => name.clone_into(&mut decl.kind.name),
+            _ => {}
+        }
+    }
+    Ok((changed, source))
+}
+
+/// The kind of the first people of a model.
+pub fn user_kind(replay: &Replay) -> Option<String> {
+    replay.scenario.items.iter().find_map(|item| match item {
+        Item::Agents(decl) if decl.recorded.is_some() => Some(decl.kind.name.clone()),
+        Item::Group(decl) if decl.recorded.is_some() => Some(decl.kind.name.clone()),
+        _ => None,
+    })
+}
+
+/// The preset of a name, or the only one whose name begins so.
+fn preset(name: &str) -> Option<&'static str> {
+    let mut found = PRESETS.iter().map(|preset| preset.name).filter(|known| known.starts_with(name));
+    match (found.next(), found.next()) {
+        (Some(one), None) => Some(one),
+        _ => PRESETS.iter().map(|preset| preset.name).find(|known| *known == name),
+    }
+}

@@ -1,0 +1,27 @@
+//! Floor 7: models beside recordings: what people did who were recorded, and what a model had predicted of them.
+//!
+//! A [`Replay`] is a model with a recording. At each of its instants the model is compiled with those who were there, as
+//! `smc check` compiles it with `from hotel at T`; then its formulas are asked of what happened next ([`monitor()`]), and of
+//! trials that begin there ([`evaluate()`]).
+
+mod cast;
+mod course;
+mod displacement;
+mod evaluate;
+mod formulas;
+mod instants;
+mod kinds;
+mod monitor;
+mod situation;
+mod source;
+
+pub use cast::Cast;
+pub use course::Beyond;
+pub use displacement::Displacement;
+pub use evaluate::{Evaluating, PREDICTED, Predicted, Prediction, eligible, evaluate};
+pub use formulas::Formulas;
+pub use instants::Instant;
+pub use kinds::{CONSTANT, user_kind};
+pub use monitor::{Judged, monitor};
+pub use situation::{Replay, Whose};
+pub use source::source;

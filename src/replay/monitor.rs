@@ -1,0 +1,85 @@
+//! The formulas of a model on the recording itself: what people did.
+//!
+//! From each instant on, everybody of the model is where the recording has them, resampled at the step of the scenario. The
+//! radii are the means of the kind. A body of several people is at their mean.
+
+use super::course::{Beyond, course};
+use super::instants::Instant;
+use super::situation::{Replay, is_of_a_place};
+use crate::base::geometry::Vec2;
+use crate::compile::study::World;
+use crate::engine::cell::Reading;
+use crate::engine::given::{averaged, judge};
+use crate::engine::{PreparedWorld, Threads};
+use crate::model::AgentId;
+use crate::syntax::diagnostic::Diagnostic;
+
+/// What one instant came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// When, and who was the user.
+    pub instant: Instant,
+    /// Whether each property holds; `None` where that is unresolved.
+    pub truths: Vec<Option<bool>>,
+}
+
+/// What each instant came to, in their order.
+///
+/// # Errors
+/// What is wrong with the model.
+pub fn monitor(
+    replay: &Replay,
+    instants: &[Instant],
+    beyond: Beyond,
+    threads: &Threads,
+) -> Result<Vec<Judged>, Vec<Diagnostic>> {
+    let one = |instant: &Instant| {
+        let truths = match replay.study_at(*instant) {
+            Ok(study) => {
+                let targets = replay.formulas.targets(&study);
+                let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
+                let world = targets.first().and_then(|target| study.worlds.get(target.world));
+                world.map_or_else(Vec::new, |world| happened(replay, *instant, (world, &columns), beyond))
+            }
+            Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => {
+                vec![None; replay.formulas.names.len()]
+            }
+            Err(errors) => return Err(errors),
+        };
+        Ok(Judged { instant: *instant, truths })
+    };
+    threads.map(instants, one).into_iter().collect()
+}
+
+/// Whether each of some columns of a world held from an instant on; the user's own track is never continued.
+pub(super) fn happened(
+    replay: &Replay,
+    instant: Instant,
+    (world, columns): (&World, &[usize]),
+    beyond: Beyond,
+) -> Vec<Option<bool>> {
+    let mean = averaged(world);
+    let prepared = PreparedWorld::new(&mean);
+    let dt = prepared.program.dt;
+    let one = |id: u32, time: f64| {
+        let id = replay.written(instant.person, id);
+        let own = if id == instant.person { Beyond::Unresolved } else { beyond };
+        course(&replay.recording, id, time, own)
+    };
+    let seen = |tick: u64, agent: AgentId| {
+        let ids = &mean.scenario.agents[agent.0 as usize].start.seen;
+        let time = instant.time + tick as f64 * dt;
+        let all: Vec<(Vec2, Vec2)> = ids.iter().map(|id| one(*id, time)).collect::<Option<_>>()?;
+        let count = all.len() as f64;
+        let sum = all.iter().fold((Vec2::zeros(), Vec2::zeros()), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+        (!all.is_empty()).then(|| (sum.0 / count, sum.1 / count))
+    };
+    let truth = |reading: &Reading| match reading {
+        Reading::Truth(truth) => Some(*truth),
+        _ => None,
+    };
+    match judge(&prepared, columns, seen) {
+        Ok(readings) => readings.iter().map(truth).collect(),
+        Err(_) => vec![None; columns.len()],
+    }
+}

@@ -1,0 +1,193 @@
+//! A model with a recording, compiled at one instant after the other.
+
+use super::cast::Cast;
+use super::formulas::Formulas;
+use super::instants::{Instant, instants};
+use super::source::source;
+use crate::advise::groups;
+use crate::base::geometry::Vec2;
+use crate::compile::study::Study;
+use crate::compile::{Files, Input, Seen, Setting, Sighting, examine};
+use crate::data::tracks::{PersonState, Reading, Recording, Velocity};
+use crate::syntax::ast::{Item, ScenarioFile};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::source::{Source, SourceId};
+
+/// Who is the user of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Whose {
+    /// Whom the model names.
+    Written,
+    /// Somebody else.
+    Person(u32),
+    /// One after the other, everybody.
+    Everybody,
+}
+
+/// A model with a recording.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// Name of the tracks.
+    pub tracks: String,
+    /// The recording, with the velocities that the people of the model have.
+    pub recording: Recording,
+    /// The recording as it is in the file.
+    pub(super) recorded: Recording,
+    /// Whose instants they are.
+    pub whose: Whose,
+    /// The properties.
+    pub formulas: Formulas,
+    pub(super) scenario: ScenarioFile,
+    /// All texts; those of properties and kinds come last.
+    pub sources: Vec<Source>,
+    cast: Cast,
+    files: Files,
+    settings: Vec<Setting>,
+}
+
+impl Replay {
+    /// A model with the recording of its tracks of a name.
+    ///
+    /// # Errors
+    /// Where the model or the recording cannot be read, they do not fit together, or there is nothing to ask.
+    pub fn new(
+        input: &Input<'_>,
+        tracks: &str,
+        velocity: Velocity,
+        whose: Whose,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let (format, text, place) = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
+        let recorded = format.read(text, &Reading::default()).map_err(|errors| {
+            let first = errors.first().map_or(String::new(), ToString::to_string);
+            vec![Diagnostic::error(Code::E0702, place, "the recording cannot be read").label(first)]
+        })?;
+        let cast = Cast::of(input.scenario, tracks)?;
+        let who = match whose {
+            Whose::Written => Some(cast.person),
+            Whose::Person(id) => Some(id),
+            Whose::Everybody => None,
+        };
+        if who != Some(cast.person) {
+            cast.is_open().map_err(|error| vec![error])?;
+        }
+        if let Some(id) = who.filter(|id| recorded.person(*id).is_none()) {
+            let error = Diagnostic::placeless(Code::E0703, format!("person {id} is not in the recording"));
+            return Err(vec![error.hint("choose another with `--user`")]);
+        }
+        let mut replay = Self {
+            tracks: tracks.to_owned(),
+            recording: recorded.clone().with(velocity),
+            recorded,
+            whose,
+            formulas: Formulas::default(),
+            scenario: input.scenario.clone(),
+            sources: input.sources.to_vec(),
+            cast,
+            files: without_tracks(input, tracks),
+            settings: input.settings.to_vec(),
+        };
+        replay.ask(input)?;
+        Ok(replay)
+    }
+
+    /// Asks for all properties, and reports what is wrong with the model at the first instant.
+    fn ask(&mut self, input: &Input<'_>) -> Result<(), Vec<Diagnostic>> {
+        self.formulas = Formulas::of(input.properties, SourceId(self.sources.len() as u16));
+        self.sources.push(self.formulas.source.clone());
+        if self.formulas.names.is_empty() {
+            let error = Diagnostic::placeless(Code::E0705, "the property files name no property");
+            let hint = "write one: `property safe = G<=4.8 s (distance(user, friend) > 0.5 m)`";
+            return Err(vec![error.hint(hint)]);
+        }
+        let first = self.instants(self.recording.step(), (f64::NEG_INFINITY, f64::INFINITY)).first().copied();
+        match first.map(|first| self.study_at(first)) {
+            Some(Err(errors)) if !errors.iter().all(is_of_a_place) => Err(errors),
+            _ => Ok(()),
+        }
+    }
+
+    /// The one whose instants they are; `None` where everybody is the user in turn.
+    pub fn only(&self) -> Option<u32> {
+        match self.whose {
+            Whose::Written => Some(self.cast.person),
+            Whose::Person(id) => Some(id),
+            Whose::Everybody => None,
+        }
+    }
+
+    /// All instants between two times, s, every so many seconds.
+    pub fn instants(&self, every: f64, between: (f64, f64)) -> Vec<Instant> {
+        instants(&self.recording, every, self.only(), between)
+    }
+
+    /// The id that a person has in the model: whoever is the user changes places with the one whom the model names.
+    pub(super) fn written(&self, user: u32, id: u32) -> u32 {
+        match id {
+            id if id == user => self.cast.person,
+            id if id == self.cast.person => user,
+            id => id,
+        }
+    }
+
+    /// The id of the user in the model.
+    pub(super) const fn user(&self) -> u32 {
+        self.cast.person
+    }
+
+    /// The model with those who are there at an instant.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub(super) fn study_at(&self, instant: Instant) -> Result<Study, Vec<Diagnostic>> {
+        let Instant { time, person } = instant;
+        let sighting = |one: PersonState| Sighting {
+            id: self.written(person, one.id),
+            position: one.position,
+            velocity: one.velocity,
+            driving: one.velocity,
+        };
+        let present: Vec<Sighting> = self.recording.at(time).into_iter().map(sighting).collect();
+        let mut people = present;
+        people.sort_by_key(|one| one.id);
+        let past = people.iter().map(|one| (one.id, self.past(self.written(person, one.id), time))).collect();
+        let seen = Seen { groups: groups(&people), people, past };
+        let mut files = self.files.clone();
+        files.see(self.tracks.clone(), seen);
+        let examined = examine(&Input {
+            sources: &self.sources,
+            scenario: &self.scenario,
+            properties: &self.formulas.files,
+            files: &files,
+            settings: &self.settings,
+        });
+        let errors: Vec<Diagnostic> =
+            examined.found.into_iter().filter(|one| one.severity == Severity::Error).collect();
+        examined.study.filter(|_| errors.is_empty()).ok_or(errors)
+    }
+
+    /// Times, s, and positions, m, of somebody up to a time.
+    fn past(&self, id: u32, time: f64) -> Vec<(f64, Vec2)> {
+        let Some(person) = self.recording.person(id) else { return Vec::new() };
+        let all = person.samples.iter().map(|sample| (self.recording.time_of(sample.frame), sample.position));
+        all.take_while(|(then, _)| *then <= time + 1e-6).collect()
+    }
+}
+
+/// The files of a model but for the recording, which is seen instant by instant.
+fn without_tracks(input: &Input<'_>, tracks: &str) -> Files {
+    let mut files = input.files.clone();
+    for item in &input.scenario.items {
+        if let Item::Tracks { name, file: Some((_, path)), .. } = item
+            && name.name == tracks
+        {
+            files.insert(path.value.clone(), Ok(Vec::new()));
+        }
+    }
+    files
+}
+
+/// Whether an error is about where somebody stands: another instant may have none.
+pub(super) fn is_of_a_place(error: &Diagnostic) -> bool {
+    matches!(error.code, Code::E0409 | Code::E0801 | Code::E0802 | Code::E0803)
+}
