@@ -4,6 +4,7 @@ use super::advise::AdviseCommand;
 use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
+use super::replay::{EvaluateCommand, MonitorCommand};
 use super::values::{Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share};
 use super::walk::WalkCommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -47,6 +48,10 @@ pub(super) enum Command {
     Path(Box<PathCommand>),
     /// Advise a user while others are observed: rank moves for each batch of observations.
     Advise(Box<AdviseCommand>),
+    /// Ask the formulas of property files of a recording itself: what people did.
+    Monitor(Box<MonitorCommand>),
+    /// Compare the predictions of a model with what happened in a recording.
+    Evaluate(Box<EvaluateCommand>),
     /// Infer traces and groups from a recording or a table of observations.
     Infer(Box<InferCommand>),
     /// Cut motion capture into steps; learn gaits from them, show, draw and score these.

@@ -1,4 +1,4 @@
-//! Floor 8: the command line. It alone opens files, reads the environment and writes to the terminal.
+//! Floor 10: the command line. It alone opens files, reads the environment and writes to the terminal.
 
 mod advise;
 mod arguments;
@@ -18,6 +18,7 @@ mod output;
 mod path;
 mod progress;
 mod ranks;
+mod replay;
 mod show;
 mod simulate;
 mod terminal;
@@ -127,6 +128,8 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Simulate(command) => simulate::run(command, colors),
         Command::Path(command) => path::run(command, colors),
         Command::Advise(command) => advise::run(command, colors),
+        Command::Monitor(command) => replay::monitor(command, colors),
+        Command::Evaluate(command) => replay::evaluate(command, colors),
         Command::Infer(command) => infer::run(command, colors),
         Command::Gait(command) => gait::run(command, colors),
         Command::Walk(command) => walk::run(command, colors),

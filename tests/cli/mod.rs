@@ -15,6 +15,7 @@ mod outputs;
 mod paths;
 mod ranks;
 mod reasons;
+mod replay;
 mod traces;
 mod walk;
 mod walks;

@@ -5,10 +5,10 @@ use crate::advise::Walked;
 use crate::base::geometry::Vec2;
 use crate::cli::complaint;
 use crate::cli::terminal::print_to_reader;
-use crate::data::tracks::{Batch, Format, Reading};
+use crate::data::tracks::{Batch, Reading};
 use crate::library::Parsed;
+use crate::replay::source;
 use crate::report::advice;
-use crate::syntax::ast::Item;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -18,35 +18,11 @@ pub(super) fn batches(
     name: &str,
     arguments: &AdviseCommand,
 ) -> Result<Vec<Batch>, Diagnostic> {
-    let tracks = parsed.scenario.items.iter().find_map(|item| match item {
-        Item::Tracks { name: own, file, .. } if own.name == name => Some(file),
-        _ => None,
-    });
-    let Some(Some((format, path))) = tracks else {
-        if tracks == Some(&None) {
-            let said = format!("`--replay {name}`: `{name}` is a stream and has no file");
-            return Err(complaint::argument(
-                said,
-                "remove `--replay` and give the batches to standard input",
-            ));
-        }
-        let hint = format!("declare them in the scenario: `tracks {name} = eth_biwi \"obsmat.txt\"`");
-        return Err(complaint::argument(
-            format!("`--replay {name}`: the scenario has no such recording"),
-            hint,
-        ));
-    };
-    let unreadable = |said: String| Diagnostic::error(Code::E0702, path.span, said);
-    let bytes =
-        parsed.files.get(&path.value).map_err(|reason| Diagnostic::error(Code::E0701, path.span, reason))?;
-    let text = std::str::from_utf8(bytes).map_err(|_| unreadable("the file is not UTF-8 text".to_owned()))?;
-    let Some(format) = Format::from_name(&format.name) else {
-        return Err(unreadable(format!("`{}` is no format of recordings", format.name)));
-    };
+    let (format, text, place) = source(&parsed.scenario, &parsed.files, name)?;
     let found = format.read_batches(text, &Reading::default(), arguments.velocity);
     let batches = found.map_err(|errors| {
         let first = errors.first().map_or(String::new(), ToString::to_string);
-        unreadable("the recording cannot be read".to_owned()).label(first)
+        Diagnostic::error(Code::E0702, place, "the recording cannot be read").label(first)
     })?;
     let first = batches.first().map_or(0.0, |batch| batch.time);
     let last = batches.last().map_or(0.0, |batch| batch.time);

@@ -1,0 +1,147 @@
+//! The options of `smc monitor` and `smc evaluate`.
+
+use crate::cli::values::{Model, parse_count, parse_duration, parse_moment, parse_share, parse_velocity};
+use crate::data::tracks::Velocity;
+use crate::replay::{Beyond, Whose};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What both have in common.
+#[derive(Args, Debug)]
+pub(in crate::cli) struct Replayed {
+    /// The model; its people are in the tracks that are replayed.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Property files (`.bltl`); their named formulas are asked, their queries are not.
+    #[arg(required = true)]
+    pub(super) properties: Vec<String>,
+    /// Tracks of the model.
+    #[arg(long, value_name = "TRACKS")]
+    pub(super) replay: String,
+    /// Time between two instants; the step of the recording by default.
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub(super) every: Option<Duration>,
+    /// First time of the replay; the beginning by default.
+    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    pub(super) from: Option<f64>,
+    /// Last time of the replay; the end by default.
+    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    pub(super) to: Option<f64>,
+    /// Confidence of intervals, by bootstrap over persons.
+    #[arg(long, value_name = "SHARE", default_value = "95%", value_parser = parse_share)]
+    pub(super) confidence: f64,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Number of threads; all cores by default. Never changes a result.
+    #[arg(short = 'j', long)]
+    pub(super) threads: Option<usize>,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+impl Replayed {
+    /// The first and the last time, s.
+    pub(super) fn between(&self) -> (f64, f64) {
+        (self.from.unwrap_or(f64::NEG_INFINITY), self.to.unwrap_or(f64::INFINITY))
+    }
+}
+
+/// `smc monitor`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct MonitorCommand {
+    #[command(flatten)]
+    pub(super) replayed: Replayed,
+    /// Whose instants: an id, or `all` for everybody in turn; by default the user of the model.
+    #[arg(long, value_name = "ID", value_parser = parse_user)]
+    pub(super) user: Option<Whose>,
+    /// Velocities: `recorded` (as in the file) or `seen` (the difference from the last position).
+    #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
+    pub(super) velocity: Velocity,
+    /// What is taken of others after the end of their tracks.
+    #[arg(long, value_enum, default_value_t = BeyondRule::Unresolved)]
+    pub(super) beyond: BeyondRule,
+    /// Format of the output.
+    #[arg(long, value_enum, default_value_t = MonitorFormat::Text)]
+    pub(super) format: MonitorFormat,
+}
+
+/// `smc evaluate`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct EvaluateCommand {
+    #[command(flatten)]
+    pub(super) replayed: Replayed,
+    /// Kinds that are compared: kinds of the model, presets, or `constant` (nobody changes the velocity); by default the kind of
+    /// the user and `constant`.
+    #[arg(long, value_name = "KIND,…", value_delimiter = ',')]
+    pub(super) kinds: Vec<String>,
+    /// Trials of each instant.
+    #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count)]
+    pub(super) trials: u64,
+    /// Whose instants: an id, or `all` for everybody in turn.
+    #[arg(long, value_name = "ID", default_value = "all", value_parser = parse_user)]
+    pub(super) user: Whose,
+    /// Whoever was recorded slower than this, in m/s, is left out.
+    #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
+    pub(super) speed: f64,
+    /// Velocities: `seen` (the difference from the last position) or `recorded` (as in the file).
+    #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
+    pub(super) velocity: Velocity,
+    /// What is taken of others after the end of their tracks.
+    #[arg(long, value_enum, default_value_t = BeyondRule::Onward)]
+    pub(super) beyond: BeyondRule,
+    /// Format of the output.
+    #[arg(long, value_enum, default_value_t = EvaluateFormat::Text)]
+    pub(super) format: EvaluateFormat,
+}
+
+/// `--beyond`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum BeyondRule {
+    /// What needs them is unresolved.
+    Unresolved,
+    /// They go on with their last velocity.
+    Onward,
+}
+
+impl From<BeyondRule> for Beyond {
+    fn from(rule: BeyondRule) -> Self {
+        match rule {
+            BeyondRule::Unresolved => Self::Unresolved,
+            BeyondRule::Onward => Self::Onward,
+        }
+    }
+}
+
+/// Formats of `smc monitor`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum MonitorFormat {
+    /// A table.
+    Text,
+    /// One object; see docs/schema/monitor.schema.json.
+    Json,
+    /// One row for each instant: `time,person`, and a column for each property.
+    Csv,
+}
+
+/// Formats of `smc evaluate`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum EvaluateFormat {
+    /// Tables.
+    Text,
+    /// One object; see docs/schema/evaluate.schema.json.
+    Json,
+    /// One row for each bin of predicted probabilities.
+    Csv,
+    /// A reliability diagram.
+    Svg,
+}
+
+fn parse_user(text: &str) -> Result<Whose, String> {
+    match text {
+        "all" => Ok(Whose::Everybody),
+        _ => text.parse().map(Whose::Person).map_err(|_| format!("`{text}` is no id: write 367, or all")),
+    }
+}

@@ -1,0 +1,159 @@
+//! `smc evaluate`: predictions against what happened.
+
+use super::arguments::{EvaluateCommand, EvaluateFormat};
+use super::{Call, Exit};
+use crate::cli::complaint;
+use crate::cli::terminal::Colors;
+use crate::gait;
+use crate::model::Scenario;
+use crate::replay::{CONSTANT, Evaluating, Instant, PREDICTED, Predicted, eligible, evaluate, user_kind};
+use crate::report::evaluate::{
+    Displacement, Evaluated, EvaluatedKind, EvaluatedProperty, to_json, to_svg, to_text, write_csv,
+};
+use crate::route::Ways;
+use crate::stats::bootstrap::{Bootstrap, DRAWS, Estimate, ratio};
+use crate::stats::brier::{Prediction, Predictions};
+use crate::stats::quality::Quality;
+use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+
+/// Runs the command.
+pub(in crate::cli) fn run(arguments: &EvaluateCommand, colors: Colors) -> Exit {
+    let work = |call: &Call| text(arguments, call);
+    super::run(&arguments.replayed, (arguments.velocity, arguments.user), colors, work)
+}
+
+fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
+    let Call { replay, threads, every, .. } = call;
+    let instants = eligible(replay, call.instants.clone(), *every, arguments.speed, PREDICTED);
+    if instants.is_empty() {
+        let said = format!("nobody moves and is seen for the next {PREDICTED} s at any instant");
+        return Err(vec![complaint::argument(said, "choose other times, or a smaller `--speed`")]);
+    }
+    let mut kinds = arguments.kinds.clone();
+    if kinds.is_empty() {
+        kinds.extend(user_kind(replay));
+        kinds.push(CONSTANT.to_owned());
+    }
+    kinds.dedup();
+    let options = Evaluating {
+        trials: arguments.trials,
+        seed: arguments.replayed.seed,
+        beyond: arguments.beyond.into(),
+    };
+    let ways = Ways::default();
+    let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let mut found = Vec::new();
+    for kind in &kinds {
+        found.push(evaluate(replay, kind, &instants, &options, (threads, &drivers))?);
+    }
+    let persons = Persons::of(&instants);
+    let bootstrap = Bootstrap {
+        persons: persons.numbers.len(),
+        draws: DRAWS,
+        seed: options.seed,
+        confidence: arguments.replayed.confidence,
+    };
+    let constant = kinds.iter().position(|kind| kind == CONSTANT).map(|k| &found[k]);
+    let names = &replay.formulas.names;
+    let of_kind = |(kind, own): (&String, &Predicted)| EvaluatedKind {
+        name: kind.clone(),
+        properties: (0..names.len())
+            .map(|k| EvaluatedProperty {
+                name: names[k].clone(),
+                unresolved: own.unresolved[k],
+                quality: persons.quality(k, own, constant.filter(|_| kind != CONSTANT), &bootstrap),
+            })
+            .collect(),
+        displacement: Some(persons.displacement(own, &bootstrap)),
+    };
+    let evaluated = Evaluated {
+        model: arguments.replayed.model.scenario.clone(),
+        properties: arguments.replayed.properties.clone(),
+        recording: replay.tracks.clone(),
+        velocity: replay.recording.velocity(),
+        trials: options.trials,
+        seed: options.seed,
+        every: *every,
+        moving: arguments.speed,
+        horizon: PREDICTED,
+        confidence: bootstrap.confidence,
+        instants: instants.len() as u64,
+        persons: bootstrap.persons as u64,
+        kinds: kinds.iter().zip(&found).map(of_kind).collect(),
+    };
+    match arguments.format {
+        EvaluateFormat::Text => Ok(to_text(&evaluated)),
+        EvaluateFormat::Json => Ok(to_json(&evaluated)),
+        EvaluateFormat::Svg => Ok(to_svg(&evaluated)),
+        EvaluateFormat::Csv => {
+            let mut out = Vec::new();
+            write_csv(&mut out, &evaluated).map_err(|error| vec![complaint::output(error.to_string())])?;
+            Ok(String::from_utf8_lossy(&out).into_owned())
+        }
+    }
+}
+
+/// The persons of all instants, numbered from 0 by ascending id.
+struct Persons {
+    numbers: BTreeMap<u32, u32>,
+}
+
+impl Persons {
+    fn of(instants: &[Instant]) -> Self {
+        let mut numbers: BTreeMap<u32, u32> = instants.iter().map(|one| (one.person, 0)).collect();
+        (0..).zip(numbers.values_mut()).for_each(|(k, number)| *number = k);
+        Self { numbers }
+    }
+
+    fn number(&self, id: u32) -> u32 {
+        self.numbers.get(&id).copied().unwrap_or(0)
+    }
+
+    /// The quality of a property, beside another predictor at the instants at which both say something.
+    fn quality(
+        &self,
+        property: usize,
+        own: &Predicted,
+        other: Option<&Predicted>,
+        bootstrap: &Bootstrap,
+    ) -> Option<Quality> {
+        type One = crate::replay::Prediction;
+        let key = |one: &One| (one.instant.person, one.instant.time.to_bits());
+        let predictions = |all: &mut dyn Iterator<Item = &One>| {
+            let one = |one: &One| Prediction {
+                person: self.number(one.instant.person),
+                probability: one.probability,
+                happened: one.happened,
+            };
+            Predictions::new(all.map(one).collect())
+        };
+        let shared = |a: &Predicted, b: &Predicted| {
+            let known: std::collections::BTreeSet<_> = b.predictions[property].iter().map(key).collect();
+            predictions(&mut a.predictions[property].iter().filter(|one| known.contains(&key(one))))
+        };
+        let all = predictions(&mut own.predictions[property].iter());
+        let pair = other.map(|other| [shared(own, other), shared(other, own)]);
+        Quality::of(&all, pair.as_ref().map(|[own, other]| [own, other]), bootstrap)
+    }
+
+    fn displacement(&self, found: &Predicted, bootstrap: &Bootstrap) -> Displacement {
+        type One = crate::replay::Displacement;
+        let mean = |of: fn(&One) -> f64| -> Option<Estimate> {
+            let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
+            for one in &found.displacements {
+                let part = &mut parts[self.number(one.person) as usize];
+                (part[0], part[1]) = (part[0] + of(one), part[1] + 1.0);
+            }
+            bootstrap.estimate(ratio(&parts))
+        };
+        Displacement {
+            mean_ade: mean(|one| one.average),
+            mean_fde: mean(|one| one.last),
+            best_of: One::BEST_OF as u64,
+            best_ade: mean(|one| one.best_average),
+            best_fde: mean(|one| one.best_last),
+            collisions: mean(|one| one.collisions),
+        }
+    }
+}

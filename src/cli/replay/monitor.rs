@@ -1,0 +1,59 @@
+//! `smc monitor`: formulas on a recording itself.
+
+use super::arguments::{MonitorCommand, MonitorFormat};
+use super::{Call, Exit};
+use crate::cli::complaint;
+use crate::cli::terminal::Colors;
+use crate::replay::{Beyond, Whose, monitor};
+use crate::report::monitor::{
+    InstantVerdict, Monitored, MonitoredInstant, MonitoredProperty, to_json, to_text, write_csv,
+};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// Runs the command.
+pub(in crate::cli) fn run(arguments: &MonitorCommand, colors: Colors) -> Exit {
+    let whose = arguments.user.unwrap_or(Whose::Written);
+    let work = |call: &Call| text(arguments, call);
+    super::run(&arguments.replayed, (arguments.velocity, whose), colors, work)
+}
+
+fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
+    let Call { replay, threads, instants, every } = call;
+    let beyond = Beyond::from(arguments.beyond);
+    let judged = monitor(replay, instants, beyond, threads)?;
+    let verdict = |truth: &Option<bool>| match truth {
+        Some(true) => InstantVerdict::True,
+        Some(false) => InstantVerdict::False,
+        None => InstantVerdict::Unresolved("a track ends before it is decided"),
+    };
+    let instants: Vec<MonitoredInstant> = (judged.iter())
+        .map(|one| MonitoredInstant {
+            time: one.instant.time,
+            person: one.instant.person,
+            verdicts: one.truths.iter().map(verdict).collect(),
+        })
+        .collect();
+    let confidence = arguments.replayed.confidence;
+    let names = replay.formulas.names.iter().enumerate();
+    let monitored = Monitored {
+        model: arguments.replayed.model.scenario.clone(),
+        properties: arguments.replayed.properties.clone(),
+        recording: replay.tracks.clone(),
+        velocity: replay.recording.velocity(),
+        user: replay.only(),
+        every: *every,
+        beyond,
+        confidence,
+        results: names.map(|(k, name)| MonitoredProperty::of(name, k, &instants, confidence)).collect(),
+        instants,
+    };
+    match arguments.format {
+        MonitorFormat::Text => Ok(to_text(&monitored)),
+        MonitorFormat::Json => Ok(to_json(&monitored)),
+        MonitorFormat::Csv => {
+            let mut out = Vec::new();
+            write_csv(&mut out, &monitored).map_err(|error| vec![complaint::output(error.to_string())])?;
+            Ok(String::from_utf8_lossy(&out).into_owned())
+        }
+    }
+}
