@@ -10,6 +10,7 @@ use crate::model::{self, Body, GaitRule, Law, Parameter, Planner, SearchRule, St
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -279,6 +280,18 @@ impl Elaborator<'_> {
             Arc::new(Planner { kind: name.name.clone(), roadmap, clearance, profile, speed_follows })
         });
         Ok(body)
+    }
+
+    /// The bodies of the declared kinds that have all parameters, by name. To be called when all errors were taken: it notes
+    /// what the other kinds lack, which is no error of a kind that no agent has.
+    pub(super) fn bodies(&mut self) -> BTreeMap<String, Body> {
+        let known = std::mem::take(&mut self.kinds).into_iter();
+        let complete = known.filter_map(|(name, kind)| {
+            let ident = Ident { name, span: Span::default() };
+            let body = self.body(&kind.ok()?, &ident).ok()?;
+            Some((ident.name, body))
+        });
+        complete.collect()
     }
 
     /// The value of the field that says how an agent finds its way.

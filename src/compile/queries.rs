@@ -469,11 +469,13 @@ impl<'a> Compiler<'a> {
         for (site, settings) in self.sites.into_iter().zip(described) {
             let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
-            let elaborator = site.elaborator;
+            let mut elaborator = site.elaborator;
             let written = elaborator.written(self.input.scenario);
+            let kinds = elaborator.bodies();
             worlds.push(World {
                 settings,
                 scenario,
+                kinds,
                 atoms: elaborator.atoms,
                 written,
                 texts: Texts { sources: sources.clone(), uses: elaborator.uses, ..elaborator.texts },

@@ -4,7 +4,7 @@ use super::dimension::Dimension;
 use super::wording::{Frame, Uses};
 use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
-use crate::model::{AgentId, Bool, Num, Scenario, Set};
+use crate::model::{AgentId, Body, Bool, Num, Scenario, Set};
 use crate::stats::Chosen;
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,6 +31,8 @@ pub struct World {
     pub settings: Vec<(String, String)>,
     /// The scenario.
     pub scenario: Arc<Scenario>,
+    /// The bodies of the declared kinds that have all parameters, by name.
+    pub kinds: BTreeMap<String, Body>,
     /// Truth values observed in each state.
     pub atoms: Vec<Bool>,
     /// How what is observed was written, for witnesses.

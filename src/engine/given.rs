@@ -28,8 +28,12 @@ pub fn judge(
         let mut named = BTreeSet::new();
         let (atoms, signals) = prepared.observed(&[column]);
         let mut tell = |agent: AgentId| _ = named.insert(agent);
-        atoms.iter().for_each(|atom| atom.mentions(&mut tell));
-        signals.iter().for_each(|signal| signal.mentions(&mut tell));
+        for atom in &atoms {
+            atom.mentions(&mut tell);
+        }
+        for signal in &signals {
+            signal.mentions(&mut tell);
+        }
         let mut monitors = StepColumns::new(prepared, &[column]).map_err(|_| Fault::Unsuitable)?;
         let mut run = Run::given(&prepared.program, TrialKey::default()).map_err(|_| Fault::Unsuitable)?;
         monitors.start(0, false);

@@ -15,6 +15,7 @@ pub mod lineage;
 pub mod lives;
 pub mod motion;
 pub mod score;
+pub mod social_force;
 pub mod trace;
 pub mod tracker;
 
@@ -25,5 +26,6 @@ pub use lineage::Lineage;
 pub use lives::{Birth, Death, Group, Membership};
 pub use motion::{ConstantVelocity, Motion, Standing};
 pub use score::TrackScore;
+pub use social_force::SocialForce;
 pub use trace::{Trace, TracePoint};
 pub use tracker::{Padding, Tracker, Tracking, TrackingError};

@@ -3,7 +3,8 @@
 use super::trace::TracePoint;
 use crate::base::geometry::Vec2;
 
-/// A model of motion. It gets the ends of all active traces at once, because people react to each other.
+/// A model of motion. It gets the ends of all active traces at once, because people react to each other. It may remember
+/// earlier calls, so each recording needs one of its own.
 pub trait Motion {
     /// The points at `time` (s, not before any end), in the order of `ends`, each with a velocity if its end has one.
     fn project(&mut self, ends: &[TracePoint], time: f64) -> Vec<TracePoint>;

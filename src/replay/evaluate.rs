@@ -5,6 +5,7 @@
 
 use super::course::{Beyond, course};
 use super::displacement::Displacement;
+use super::formulas::targets;
 use super::instants::Instant;
 use super::kinds::{CONSTANT, with_kind};
 use super::monitor::happened;
@@ -108,7 +109,7 @@ pub fn evaluate(
             }
             Err(errors) => return Err(errors),
         };
-        let targets = own.formulas.targets(&study);
+        let targets = targets(&study);
         let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
         let Some(target) = targets.first() else { return Ok((Vec::new(), None)) };
         let (Some(world), Some(prepared)) =

@@ -37,13 +37,13 @@ impl Formulas {
         }
         Self { names, files, source }
     }
+}
 
-    /// The column of each property.
-    pub(super) fn targets(&self, study: &Study) -> Vec<Target> {
-        let target = |ask: &Ask| match ask {
-            Ask::Estimate { measure, .. } => Some(measure.target),
-            _ => None,
-        };
-        study.queries.iter().filter_map(|query| target(&query.ask)).collect()
-    }
+/// The column of each property.
+pub(super) fn targets(study: &Study) -> Vec<Target> {
+    let target = |ask: &Ask| match ask {
+        Ask::Estimate { measure, .. } => Some(measure.target),
+        _ => None,
+    };
+    study.queries.iter().filter_map(|query| target(&query.ask)).collect()
 }

@@ -4,6 +4,7 @@
 //! radii are the means of the kind. A body of several people is at their mean.
 
 use super::course::{Beyond, course};
+use super::formulas::targets;
 use super::instants::Instant;
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
@@ -36,7 +37,7 @@ pub fn monitor(
     let one = |instant: &Instant| {
         let truths = match replay.study_at(*instant) {
             Ok(study) => {
-                let targets = replay.formulas.targets(&study);
+                let targets = targets(&study);
                 let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
                 let world = targets.first().and_then(|target| study.worlds.get(target.world));
                 world.map_or_else(Vec::new, |world| happened(replay, *instant, (world, &columns), beyond))

@@ -143,6 +143,11 @@ fn rounded(x: f64, digits: usize) -> String {
     plain(format!("{x:.digits$e}").parse().unwrap_or(x))
 }
 
+/// Rounded to thousandths: seconds to 1 ms, metres to 1 mm. A zero has no sign.
+pub fn thousandths(x: f64) -> f64 {
+    (x * 1000.0).round() / 1000.0 + 0.0
+}
+
 /// A count with commas: `1,234,567`.
 pub fn count(n: u64) -> String {
     let digits = n.to_string();
@@ -221,6 +226,8 @@ mod tests {
             ["3 µs", "21 ms", "1.00 s", "1.32 s", "2 min 5 s", "?"]
         );
         assert_eq!([-0.013_390_7, 13.0785, 30.0, 12_345.6].map(brief), ["-0.01339", "13.08", "30", "12350"]);
+        let rounded = [2.800_000_000_000_000_3, -0.000_4, -7.149_6, 0.1 + 0.2].map(thousandths);
+        assert_eq!(rounded.map(|x| x.to_string()), ["2.8", "0", "-7.15", "0.3"]);
         assert_eq!([0.05, 1e-7, 30.0, 2_093.0, 0.1 + 0.2].map(plain), ["0.05", "1e-7", "30", "2093", "0.3"]);
     }
 

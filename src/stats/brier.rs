@@ -11,7 +11,7 @@
 //! Probabilities in a bin differ, so two terms more make the sum exact (Stephenson, Coelho and Jolliffe 2008):
 //!
 //! - within-bin variance = `Σ (p_i − p_k)² / N`
-//! - within-bin covariance = `Σ (p_i − p_k)(o_i − o_k) / N`, without the factor 2 that their definition has
+//! - within-bin covariance = `Σ (p_i − p_k)(o_i − o_k) / N`, without the factor 2 of the sum
 //! - brier = reliability − resolution + uncertainty + variance − 2 covariance
 //!
 //! The bins are tenths of the predictions, by ascending probability. Equal probabilities are in one bin, that of the

@@ -37,6 +37,15 @@ pub(in crate::cli) struct InferCommand {
     /// How traces are projected to the time of an observation.
     #[arg(long, value_enum, default_value_t = MotionModel::Constant)]
     pub(super) motion: MotionModel,
+    /// With the social force: a kind of the scene, or a preset; `helbing2000` by default.
+    #[arg(long, value_name = "NAME")]
+    pub(super) kind: Option<String>,
+    /// With the social force: a scenario (`.scn`) whose walls and obstacles people avoid.
+    #[arg(long, value_name = "MODEL")]
+    pub(super) scene: Option<String>,
+    /// Also search this folder for recordings and imports of the scene. May be given several times.
+    #[arg(long = "data", value_name = "DIR", requires = "scene")]
+    pub(super) data: Vec<PathBuf>,
     /// Longest time of a projection.
     #[arg(long, value_name = "TIME", default_value = "2s", value_parser = parse_moment)]
     pub(super) projection: f64,
@@ -76,6 +85,8 @@ pub(super) enum MotionModel {
     Constant,
     /// Everybody stands.
     Standing,
+    /// People react to each other and to the scene, by the social force model.
+    SocialForce,
 }
 
 /// Formats of `smc infer`.

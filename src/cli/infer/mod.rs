@@ -1,6 +1,7 @@
 //! `smc infer`: traces and groups of a recording, or of a table of observations.
 
 mod arguments;
+mod motion;
 
 pub(super) use arguments::InferCommand;
 
@@ -10,14 +11,13 @@ use super::output;
 use super::terminal::{Colors, print};
 use crate::base::random::TrialKey;
 use crate::data::tracks::{Batch, Format, LineError, Reading, Velocity, read_groups};
-use crate::perception::{
-    Clustering, ConstantVelocity, Inferring, Motion, Padding, Standing, Tracking, infer,
-};
+use crate::perception::{Clustering, Inferring, Padding, Tracking, infer};
 use crate::report::ExitCode as Exit;
 use crate::report::infer::{InferredFile, to_csv, to_json, to_svg};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-use arguments::{InferFormat, MotionModel, PaddingRule};
+use arguments::{InferFormat, PaddingRule};
+use motion::ChosenMotion;
 use std::path::PathBuf;
 
 /// Bad lines of a file that are shown.
@@ -25,7 +25,7 @@ const SHOWN: usize = 10;
 
 /// Runs the command.
 pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
-    match answer(arguments) {
+    match answer(arguments, colors) {
         Ok(()) => Exit::Success,
         Err(errors) => {
             complaint::tell_all(&errors, &[], colors);
@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
     }
 }
 
-fn answer(arguments: &InferCommand) -> Result<(), Vec<Diagnostic>> {
+fn answer(arguments: &InferCommand, colors: Colors) -> Result<(), Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
     let positive = [arguments.projection, arguments.threshold, arguments.cohesion];
     let divides = arguments.discount.iter().chain(&positive);
@@ -42,11 +42,16 @@ fn answer(arguments: &InferCommand) -> Result<(), Vec<Diagnostic>> {
         let said = "`--projection`, `--threshold`, `--cohesion` and `--discount` must be positive";
         return Err(one(complaint::argument(said, "write a positive number")));
     }
-    let files: Vec<PathBuf> = [Some(&arguments.tracks), arguments.annotated.as_ref()]
-        .into_iter()
-        .flatten()
-        .map(PathBuf::from)
-        .collect();
+    if let Some(fps) = arguments.fps.filter(|fps| !(*fps > 0.0 && *fps <= 1e6)) {
+        let said = format!("`--fps` must be above 0 and at most 1e6 (got {fps})");
+        return Err(one(complaint::argument(said, "write a number of frames a second, such as 25")));
+    }
+    let named = [Some(&arguments.tracks), arguments.annotated.as_ref(), arguments.scene.as_ref()];
+    if named.into_iter().flatten().filter(|name| *name == "-").count() > 1 {
+        return Err(one(complaint::input("standard input can be read only once")));
+    }
+    let ChosenMotion { mut motion, kind, paths } = motion::chosen(arguments, colors)?;
+    let files: Vec<PathBuf> = named.into_iter().flatten().map(PathBuf::from).chain(paths).collect();
     output::guard(arguments.output.as_deref(), &files).map_err(one)?;
     let text = text_of(&arguments.tracks)?;
     let Some(format) = arguments.input.or_else(|| Format::of(&text)) else {
@@ -90,18 +95,14 @@ fn answer(arguments: &InferCommand) -> Result<(), Vec<Diagnostic>> {
         longest_gap: None,
         annotated,
     };
-    let (mut constant, mut standing) = (ConstantVelocity, Standing);
-    let motion: &mut dyn Motion = match arguments.motion {
-        MotionModel::Constant => &mut constant,
-        MotionModel::Standing => &mut standing,
-    };
-    let name = motion.name();
-    let inference = infer(&batches, &options, motion)
+    let inference = infer(&batches, &options, motion.as_mut())
         .map_err(|error| one(Diagnostic::placeless(Code::E0702, error.to_string())))?;
     let report = InferredFile {
         file: inputs::shown(&arguments.tracks),
         velocity,
-        motion: name,
+        motion: motion.name(),
+        kind: kind.as_deref(),
+        scene: arguments.scene.as_deref().map(inputs::shown),
         options: &options,
         inference: &inference,
     };

@@ -12,6 +12,7 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::terminal::{Colors, print};
+use crate::base::visible::visible;
 use crate::data::tracks::Velocity;
 use crate::engine::{Fault, Threads};
 use crate::library;
@@ -78,7 +79,7 @@ fn run(
     let written = match &replayed.output {
         Some(path) => output::write(path, |out| out.write_all(text.as_bytes()))
             .map_err(|error| format!("`{}` cannot be written: {error}", path.display())),
-        None => print(&text),
+        None => print(&visible(&text)),
     };
     match written {
         Ok(()) => Exit::Success,

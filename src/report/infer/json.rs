@@ -2,12 +2,13 @@
 
 use super::InferredFile;
 use crate::perception::{Birth, Death, Group, InferredTrace, Padding};
+use crate::report::number::thousandths;
 use serde_json::{Value, json};
 
 /// Version of the form of this object.
 const SCHEMA: u32 = 1;
 
-/// File, parameters, intervals, traces, groups and scores.
+/// File, parameters, intervals, traces, groups and scores. Times, places and velocities have three decimals.
 pub fn to_json(report: &InferredFile) -> String {
     let (options, found) = (report.options, report.inference);
     let (tracking, clustering) = (options.tracking, options.clustering);
@@ -37,6 +38,8 @@ pub fn to_json(report: &InferredFile) -> String {
         "velocity": report.velocity.name(),
         "parameters": {
             "motion": report.motion,
+            "kind": report.kind,
+            "scene": report.scene,
             "anonymous": options.is_anonymous,
             "threshold": tracking.threshold,
             "projection": tracking.longest,
@@ -49,7 +52,7 @@ pub fn to_json(report: &InferredFile) -> String {
             "velocity_discount": clustering.velocity_discount,
             "seed": options.key.seed,
         },
-        "intervals": found.intervals.iter().map(|(from, to)| json!([from, to])).collect::<Vec<_>>(),
+        "intervals": found.intervals.iter().map(|(from, to)| [*from, *to].map(thousandths)).collect::<Vec<_>>(),
         "traces": found.traces.iter().map(trace).collect::<Vec<_>>(),
         "groups": found.groups.iter().map(group).collect::<Vec<_>>(),
         "score": { "tracks": tracks, "groups": groups },
@@ -59,13 +62,13 @@ pub fn to_json(report: &InferredFile) -> String {
 
 fn trace(one: &InferredTrace) -> Value {
     let points = one.trace.points.iter().map(|point| {
-        let (p, v) = (point.position, point.velocity);
-        json!([point.time, p.x, p.y, v.map(|v| v.x), v.map(|v| v.y)])
+        let (p, v) = (point.position.map(thousandths), point.velocity.map(|v| v.map(thousandths)));
+        json!([thousandths(point.time), p.x, p.y, v.map(|v| v.x), v.map(|v| v.y)])
     });
     json!({
         "id": one.trace.number,
-        "from": one.trace.since,
-        "to": one.trace.end().time,
+        "from": thousandths(one.trace.since),
+        "to": thousandths(one.trace.end().time),
         "points": points.collect::<Vec<_>>(),
         "people": one.people,
     })
@@ -80,14 +83,14 @@ fn group(one: &Group) -> Value {
         Death::Leave => ("leave", None),
         Death::Merge(into) => ("merge", Some(into)),
     };
-    let members = one
-        .members
-        .iter()
-        .map(|member| json!({ "trace": member.trace, "from": member.from, "to": member.to }));
+    let members = one.members.iter().map(|member| {
+        let (from, to) = (thousandths(member.from), thousandths(member.to));
+        json!({ "trace": member.trace, "from": from, "to": to })
+    });
     json!({
         "id": one.number,
-        "from": one.from,
-        "to": one.to,
+        "from": thousandths(one.from),
+        "to": thousandths(one.to),
         "born": born,
         "of": of,
         "ended": ended,

@@ -47,7 +47,6 @@ fn terms_by_hand_within_a_bin() {
         (found.brier, (0.04 + 0.36) / 20.0),
         (found.reliability, 2.0 * 0.04 / 20.0),
         (found.within_bin_variance, 2.0 * 0.01 / 20.0),
-        // Stephenson, Coelho and Jolliffe 2008 have twice of it.
         (found.within_bin_covariance, 2.0 * 0.05 / 20.0),
         (found.calibration_error, 2.0 * 0.2 / 20.0),
     ];
