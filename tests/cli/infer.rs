@@ -3,6 +3,10 @@
 use crate::program::{Place, at_root, recordings};
 use serde_json::Value;
 
+/// A scene with a wall, a kind that forces move, one that lacks parameters, and one that steps.
+const SCENE: &str = "horizon = 1 s\nstep = 0.02 s\nscene { wall (1.2, -5) -- (1.2, 5) }\n\
+                     kind slim: sfm preset helbing2000 { radius = 0.2 m }\nkind bare: sfm { radius = 0.2 m }\n\
+                     kind stepper: stepped { radius = 0.25 m }\n";
 const SQUARE: &str = include_str!("../../models/square.csv");
 
 #[test]
@@ -47,6 +51,125 @@ fn all_formats_and_standard_input() {
 }
 
 #[test]
+fn the_social_force_takes_a_kind_and_a_scene() {
+    let schema: Value = serde_json::from_str(include_str!("../../docs/schema/infer.schema.json")).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    let (square, force) = (["infer", "models/square.csv"], ["--motion", "social-force"]);
+    for (words, kind, scene) in [
+        (&[] as &[&str], "helbing2000", Value::Null),
+        (&["--kind", "vissim2008"], "vissim2008", Value::Null),
+        (&["--scene", "models/square.scn"], "helbing2000", "models/square.scn".into()),
+        (&["--scene", "models/square.scn", "--kind", "adult"], "adult", "models/square.scn".into()),
+        (&["--scene", "models/square.scn", "--data", "models"], "helbing2000", "models/square.scn".into()),
+    ] {
+        let said = at_root(&[&square[..], &force, words].concat());
+        assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{words:?}");
+        let json = said.json();
+        assert!(schema.is_valid(&json), "{json:#}");
+        let parameters = &json["parameters"];
+        assert_eq!(parameters["motion"], "social-force");
+        assert_eq!((&parameters["kind"], &parameters["scene"]), (&kind.into(), &scene), "{words:?}");
+    }
+    for motion in ["constant", "standing"] {
+        let parameters = at_root(&[&square[..], &["--motion", motion]].concat()).json()["parameters"].clone();
+        assert_eq!((&parameters["motion"], &parameters["kind"]), (&motion.into(), &Value::Null));
+    }
+}
+
+#[test]
+fn a_wall_keeps_people_on_their_side() {
+    // One walks towards the wall and is hidden; another is seen behind it, where the first would be without the wall.
+    let table = "time,id,x,y\n0,1,0,0\n0.4,1,0.5,0\n1.6,2,2,0\n";
+    let place = Place::new(&[("a.csv", table), ("scene.scn", SCENE)]);
+    let traces = |words: &[&str]| {
+        let said = place.call(&[&["infer", "a.csv", "--anonymous"], words].concat());
+        assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{words:?}");
+        said.json()["traces"].as_array().unwrap().len()
+    };
+    assert_eq!(traces(&[]), 1);
+    assert_eq!(traces(&["--motion", "social-force"]), 1);
+    assert_eq!(traces(&["--motion", "social-force", "--scene", "scene.scn"]), 2);
+    assert_eq!(traces(&["--motion", "social-force", "--scene", "scene.scn", "--kind", "slim"]), 2);
+    let fed = place.fed(&["infer", "a.csv", "--motion", "social-force", "--scene", "-"], SCENE);
+    assert_eq!((fed.code, fed.json()["parameters"]["scene"].as_str()), (Some(0), Some("<stdin>")));
+}
+
+#[test]
+fn numbers_have_three_decimals() {
+    let is_short = |text: &str| text.split_once('.').is_none_or(|(_, decimals)| decimals.len() <= 3);
+    let csv = at_root(&["infer", "models/square.csv", "--format", "csv"]).out;
+    assert!(csv.lines().skip(1).flat_map(|line| line.split(',')).all(is_short), "{csv}");
+    let json = at_root(&["infer", "models/square.csv"]).json();
+    let mut all = vec![&json["intervals"], &json["traces"], &json["groups"]];
+    let mut count = 0;
+    while let Some(value) = all.pop() {
+        match value {
+            Value::Array(values) => all.extend(values),
+            Value::Object(fields) => all.extend(fields.values()),
+            Value::Number(number) => {
+                count += 1;
+                assert!(is_short(&number.to_string()), "{number}");
+            }
+            _ => {}
+        }
+    }
+    assert!(count > 1000, "{count}");
+}
+
+#[test]
+fn bad_options_of_motion_are_refused() {
+    let place = Place::new(&[
+        ("a.csv", SQUARE),
+        ("scene.scn", SCENE),
+        ("broken.scn", "horizon = 1 s\nstep = 0.02 s\nscene { wall (1.2 s, -5) -- (1.2, 5) }\n"),
+    ]);
+    let force = ["--motion", "social-force"];
+    for (words, parts) in [
+        (&["--kind", "slim"][..], &["error[E0705]", "`--kind` needs", "--motion social-force"][..]),
+        (&["--motion", "standing", "--scene", "scene.scn"], &["error[E0705]", "`--scene` needs"]),
+        (&["--data", "."], &["--scene <MODEL>"]),
+    ] {
+        refused(&place, &[&["a.csv"], words].concat(), parts);
+    }
+    for (words, parts) in [
+        (
+            &["--kind", "helbing2001"][..],
+            &["error[E0705]", "unknown preset `helbing2001`", "did you mean `helbing2000`?"][..],
+        ),
+        (&["--scene", "scene.scn", "--kind", "slin"], &["error[E0705]", "`slin`", "did you mean `slim`?"]),
+        (
+            &["--scene", "scene.scn", "--kind", "bare"],
+            &["neither a preset nor a kind of the scene with all parameters", "slim"],
+        ),
+        (
+            &["--scene", "scene.scn", "--kind", "stepper"],
+            &["no force moves agents of the kind `stepper`", "slim, helbing2000, johansson2007, vissim2008"],
+        ),
+        (&["--scene", "broken.scn"], &["error[E0303]", "broken.scn:3:15"]),
+        (&["--scene", "missing.scn"], &["error[E0701]", "does not exist"]),
+        (
+            &["--scene", "scene.scn", "--data", "missing"],
+            &["error[E0701]", "`--data missing` does not exist"],
+        ),
+        (&["--scene", "scene.scn", "-o", "scene.scn"], &["error[E0920]", "overwrite"]),
+    ] {
+        refused(&place, &[&["a.csv"], &force[..], words].concat(), parts);
+    }
+    let twice = place.fed(&["infer", "-", "--motion", "social-force", "--scene", "-"], SQUARE);
+    assert_eq!((twice.code, twice.out.as_str()), (Some(2), ""));
+    assert!(twice.err.contains("standard input can be read only once"), "{}", twice.err);
+}
+
+/// A call that ends with 2, says nothing on standard output and all the parts on standard error.
+fn refused(place: &Place, words: &[&str], parts: &[&str]) {
+    let said = place.call(&[&["infer"], words].concat());
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}\n{}", said.err);
+    for part in parts {
+        assert!(said.err.contains(part), "{part} of {words:?}\n{}", said.err);
+    }
+}
+
+#[test]
 fn bad_input_is_refused() {
     let place = Place::new(&[
         ("a.csv", SQUARE),
@@ -66,14 +189,11 @@ fn bad_input_is_refused() {
         (&["missing.csv"], &["error[E0701]", "does not exist"]),
         (&["a.csv", "--from", "30s"], &["between `--from` and `--to`", "from 0 s to 20 s"]),
         (&["a.csv", "--threshold", "0"], &["must be positive"]),
+        (&["a.csv", "--fps", "0"], &["error[E0705]", "`--fps` must be above 0", "got 0"]),
         (&["a.csv", "--annotated", "groups.txt"], &["names nobody who is in the recording"]),
         (&["a.csv", "-o", "a.csv"], &["error[E0920]", "overwrite"]),
     ] {
-        let said = place.call(&[&["infer"], words].concat());
-        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}\n{}", said.err);
-        for part in parts {
-            assert!(said.err.contains(part), "{part} of {words:?}\n{}", said.err);
-        }
+        refused(&place, words, parts);
     }
 }
 
