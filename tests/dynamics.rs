@@ -354,6 +354,7 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
                 friction: 0.0,
                 radius_factor: 1.0,
                 spread: 0.0,
+                room: f64::INFINITY,
                 tau_factor: 1.0,
             })
         };
@@ -380,6 +381,7 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
                 friction: 1e4,
                 radius_factor: 1.0,
                 spread: 0.0,
+                room: f64::INFINITY,
                 tau_factor: 1.0,
             }),
             ..person(p(0.0, y))

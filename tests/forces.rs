@@ -126,6 +126,7 @@ fn random(n: usize, side: f64, kind: Kind, rng: &mut Numbers) -> Crowd {
                 friction: 1e4,
                 radius_factor: 1.0,
                 spread: 0.0,
+                room: f64::INFINITY,
                 tau_factor: 1.0,
             }),
             ..person(p(rng.between(0.0, side), rng.between(0.0, side)))

@@ -80,6 +80,20 @@ fn a_party_is_one_body_at_the_mean_of_its_members() {
     assert_eq!(own.agents[0].particle.unwrap().radius(0.4), 0.4);
 }
 
+/// The middle of a party that passes a post on both sides is near it or in it.
+#[test]
+fn a_party_beside_a_barrier_is_no_wider_than_its_distance() {
+    let party = "group party: adult as particle from here at 1 s group of 1";
+    let beside = |distance: f64| {
+        format!("scene {{ obstacle post: circle ({}, 0.3) radius 0.05 m }}\n{party}", 1.25 + distance)
+    };
+    for (distance, radius) in [(0.2, 0.25), (0.35, 0.35), (0.7, 0.55)] {
+        let found = scenario("", &beside(distance));
+        assert!((found.agents[0].particle.unwrap().radius(0.25) - radius).abs() < 1e-12, "{distance}");
+    }
+    assert!(refused("", &beside(0.05)).contains("leaves less than half of its radius (0.250 m)"));
+}
+
 #[test]
 fn without_one_body_members_of_each_group_attract_each_other() {
     let found = scenario("", "groups crowd: adult from here at 1 s { attraction = 30 N }");

@@ -321,6 +321,7 @@ fn a_particle_is_the_sum_of_its_persons() {
         friction: 0.0,
         radius_factor: 1.0,
         spread: 0.0,
+        room: f64::INFINITY,
         tau_factor: 1.0,
     });
     let program = Program::new(Arc::new(scenario(vec![four.clone()])));

@@ -9,7 +9,8 @@ use super::people::{People, moving, start};
 use super::sighting::Sighting;
 use super::symbols::Meaning;
 use crate::base::geometry::Vec2;
-use crate::model::{self, AgentId, Body, Group, Parameter, Particle, Route, Start};
+use crate::base::math;
+use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
 use crate::syntax::ast::{Field, GroupDecl, Recorded, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -33,8 +34,8 @@ struct Common {
 }
 
 impl Common {
-    /// One body for some persons, who are so far from their middle, m.
-    fn particle(&self, persons: usize, spread: f64) -> Particle {
+    /// One body for some persons, who are so far from their middle and have so much room, m.
+    fn particle(&self, persons: usize, (spread, room): (f64, f64)) -> Particle {
         let size = (persons as f64).sqrt();
         let [radius, tau, _] = self.own;
         Particle {
@@ -43,6 +44,7 @@ impl Common {
             friction: self.friction,
             radius_factor: if radius { 1.0 } else { size },
             spread: if radius { 0.0 } else { spread },
+            room: if radius { f64::INFINITY } else { room },
             tau_factor: if tau { 1.0 } else { size },
         }
     }
@@ -80,7 +82,7 @@ impl<'a> Elaborator<'a> {
             self.define_empty(&decl.name, false, with);
             return;
         }
-        let particle = decl.particle.map(|_| common.particle(count, 0.0));
+        let particle = decl.particle.map(|_| common.particle(count, (0.0, f64::INFINITY)));
         let bodies = if particle.is_some() { 1 } else { count };
         let body = Arc::new(common.body.clone());
         let each = |_| (body.clone(), placed.clone(), common.route.clone());
@@ -186,7 +188,7 @@ impl<'a> Elaborator<'a> {
             return;
         }
         let bodies: Vec<(Sighting, Option<Particle>)> = match decl.particle {
-            Some(_) => parties.iter().map(|party| together(party, common)).collect(),
+            Some(_) => parties.iter().map(|party| together(party, common, &self.scene.barriers)).collect(),
             None => parties.iter().flatten().map(|one| (*one, None)).collect(),
         };
         let is_set = decl.plural || decl.particle.is_none();
@@ -232,8 +234,9 @@ impl People {
     }
 }
 
-/// People who are seen together as one body: at their mean, with their mean velocity, as wide as they stand.
-fn together(party: &[Sighting], common: &Common) -> (Sighting, Option<Particle>) {
+/// People who are seen together as one body: at their mean, with their mean velocity, as wide as they stand and barriers
+/// let them.
+fn together(party: &[Sighting], common: &Common, barriers: &[Barrier]) -> (Sighting, Option<Particle>) {
     let count = party.len() as f64;
     let mean = |of: fn(&Sighting) -> Vec2| party.iter().map(of).sum::<Vec2>() / count;
     let position = mean(|one| one.position);
@@ -244,5 +247,7 @@ fn together(party: &[Sighting], common: &Common) -> (Sighting, Option<Particle>)
         velocity: mean(|one| one.velocity),
         driving: mean(|one| one.driving),
     };
-    (sighting, Some(common.particle(party.len(), square.sqrt())))
+    let distances = barriers.iter().map(|barrier| barrier.obstacle.distance(position));
+    let room = distances.fold(f64::INFINITY, math::at_most);
+    (sighting, Some(common.particle(party.len(), (square.sqrt(), room))))
 }

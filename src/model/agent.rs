@@ -91,6 +91,9 @@ pub struct Particle {
     /// Root mean square distance from their middle, m, of persons who were seen; else 0. The radius is at least this and one
     /// person's.
     pub spread: f64,
+    /// How far, m, persons who were seen were from the nearest barrier, or infinity. What is more than one person is no wider,
+    /// because a party that passes a post on both sides is no disc on top of it.
+    pub room: f64,
     /// Factor of the relaxation time as drawn: the root of `persons` unless the group sets its own.
     pub tau_factor: f64,
 }
@@ -99,7 +102,9 @@ impl Particle {
     /// The radius of the body, m, of persons with a radius as drawn.
     pub fn radius(&self, drawn: f64) -> f64 {
         let (equal, wide) = (drawn * self.radius_factor, drawn + self.spread);
-        if equal > wide { equal } else { wide }
+        let whole = if equal > wide { equal } else { wide };
+        let most = if self.room > drawn { self.room } else { drawn };
+        if whole > most { most } else { whole }
     }
 }
 

@@ -225,7 +225,7 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
             out,
             "      one body for {}: radius {}, tau times {}, repulsion times {}, friction {} kg/(m s)",
             counted(u64::from(p.persons), "person"),
-            width(&p),
+            width(&p, agent.body[Parameter::Radius].bounds().1),
             number(p.tau_factor),
             number(p.repulsion),
             number(p.friction)
@@ -242,13 +242,16 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     let _ = writeln!(out, "      {}", way(scenario, &agent.route));
 }
 
-/// How wide the body of a group is.
-fn width(particle: &Particle) -> String {
-    let times = format!("times {}", number(particle.radius_factor));
+/// How wide the body of a group is, of persons whose radius is at most `drawn`.
+fn width(particle: &Particle, drawn: f64) -> String {
+    let mut text = format!("times {}", number(particle.radius_factor));
     if particle.spread > 0.0 {
-        return format!("{times}, or plus {} m if that is more", number(particle.spread));
+        text += &format!(", or plus {} m if that is more", number(particle.spread));
     }
-    times
+    if particle.room < (Particle { room: f64::INFINITY, ..*particle }).radius(drawn) {
+        text += &format!(", but no wider than {} m, the distance to a barrier", number(particle.room));
+    }
+    text
 }
 
 /// How a roadmap is drawn, in words.

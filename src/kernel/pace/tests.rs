@@ -176,6 +176,7 @@ fn parameters_are_what_is_drawn_not_what_is_declared() {
         friction: 0.0,
         radius_factor: 4.0,
         spread: 0.0,
+        room: f64::INFINITY,
         tau_factor: 4.0,
     });
     assert_eq!(fastest(&group), 4.0);
