@@ -133,7 +133,7 @@ fn race(arms: usize, word: u64, mut source: impl FnMut(usize, u64, u64, &mut Vec
             }
         }
     }
-    black_box(race.choice(None));
+    black_box(race.choice());
     race.trials()
 }
 

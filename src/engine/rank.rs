@@ -71,16 +71,18 @@ impl Procedure {
     fn new(setup: &RankSetup<'_>) -> Result<Self, Fault> {
         let (epsilon, delta, ranking) = setup.rule;
         let arms = setup.options.len();
+        let deviations: Vec<f64> = setup.options.iter().map(|option| option.deviation).collect();
         Ok(match (&setup.kind, ranking) {
             (MeasureKind::Probability, Ranking::Okamoto) => {
-                Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?)
+                Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?.preferring(deviations))
             }
             (MeasureKind::Probability, Ranking::Betting(allocation)) => {
-                Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?)
+                Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?.preferring(deviations))
             }
             (MeasureKind::Expectation { range, .. }, Ranking::Betting(allocation)) => {
                 let scaled = epsilon / (range.1 - range.0);
-                Self::Scores { race: Race::new(arms, scaled, delta, WORD, allocation)?, range: *range }
+                let race = Race::new(arms, scaled, delta, WORD, allocation)?.preferring(deviations);
+                Self::Scores { race, range: *range }
             }
             (MeasureKind::Expectation { .. }, Ranking::Okamoto) | (MeasureKind::Quantile { .. }, _) => {
                 return Err(Fault::Unsuitable);
@@ -104,11 +106,11 @@ impl Procedure {
         }
     }
 
-    fn choice(&mut self, deviations: &[f64]) -> Choice {
+    fn choice(&mut self) -> Choice {
         match self {
-            Self::Booleans(race) => race.choice(Some(deviations)),
-            Self::Scores { race, .. } => race.choice(Some(deviations)),
-            Self::Each(each) => each.choice(Some(deviations)),
+            Self::Booleans(race) => race.choice(),
+            Self::Scores { race, .. } => race.choice(),
+            Self::Each(each) => each.choice(),
         }
     }
 
@@ -351,8 +353,7 @@ impl<'s> RankSampling<'s> {
         };
         self.spent = spent + budget.elapsed() - started;
         let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
-        let deviations: Vec<f64> = self.setup.options.iter().map(|option| option.deviation).collect();
-        let choice = self.procedure.choice(&deviations);
+        let choice = self.procedure.choice();
         let values = (0..arms)
             .map(|arm| match means.get(arm) {
                 Some(mean) => {

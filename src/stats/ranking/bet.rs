@@ -41,6 +41,15 @@ pub(super) fn log_mean_below(logs: &[f64; BETS], least: f64) -> f64 {
     if highest(logs) - LN_BETS >= least { least } else { math::at_most(log_mean(logs), least) }
 }
 
+/// How fast the evidence grows with each trial that a leader of this mean is certified within epsilon of an arm that
+/// never fails: of the bet that grows fastest. Scores are taken to be 0 or 1, which is the slowest.
+pub(super) fn growth(mean: f64, epsilon: f64) -> f64 {
+    let of = |bet: &f64| {
+        mean * math::ln(1.0 + bet * epsilon) + (1.0 - mean) * math::ln(1.0 + bet * (epsilon - 1.0))
+    };
+    bets().iter().map(of).fold(f64::NEG_INFINITY, math::at_least)
+}
+
 fn highest(logs: &[f64; BETS]) -> f64 {
     logs.iter().fold(f64::NEG_INFINITY, |a, b| math::at_least(a, *b))
 }

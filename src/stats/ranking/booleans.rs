@@ -1,7 +1,7 @@
 //! Boolean outcomes as bitsets by trial index; a pair is compared by counting bits.
 
 use super::Table;
-use super::bet::{BETS, Factors, bets, log_mean_below, log_mean_near, reaches};
+use super::bet::{BETS, Factors, bets, log_mean, log_mean_below, log_mean_near, reaches};
 use crate::stats::Outcome;
 use std::cmp::Ordering;
 
@@ -59,6 +59,28 @@ impl Booleans {
             pair.trials = end;
         }
         *pair
+    }
+
+    /// A pair over all trials of the leader: where the rival has none, it is taken to hold. `None` if it has as many.
+    fn completed(&self, pair: Pair, leader: usize) -> Option<Pair> {
+        let a = &self.arms[leader];
+        let whole = (pair.trials / 64) as usize;
+        let rest = (1u64 << (pair.trials % 64)) - 1;
+        let ones = |words: &[u64]| words.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+        let later = a.trials - pair.trials;
+        (later > 0).then(|| {
+            let earlier = ones(&a.sure[..whole]) + ones(&[a.sure[whole] & rest]);
+            Pair { trials: a.trials, wins: pair.wins + later - (a.count.0 - earlier), losses: pair.losses }
+        })
+    }
+
+    /// The logarithms of the evidence of a pair, of the way to count it that says more.
+    fn logs(&self, pair: Pair, leader: usize, factors: &Factors) -> [f64; BETS] {
+        let plain = logs(pair, factors);
+        match self.completed(pair, leader).map(|pair| logs(pair, factors)) {
+            Some(other) if log_mean(&other) > log_mean(&plain) => other,
+            _ => plain,
+        }
     }
 }
 
@@ -131,7 +153,7 @@ impl Table for Booleans {
     fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64) {
         let pair = self.pair(rival, leader);
         let [worse, close] = &self.factors;
-        let close = log_mean_near(&logs(pair, close), threshold);
+        let close = log_mean_near(&self.logs(pair, leader, close), threshold);
         if close < threshold {
             // The evidence against being better at all is smaller still.
             return (close, close);
@@ -143,8 +165,11 @@ impl Table for Booleans {
         let pair = self.pair(rival, leader);
         let [worse, close] = &self.factors;
         // The evidence against being better at all is the smaller.
-        let close = reaches(&logs(pair, close), threshold);
-        (close && reaches(&logs(pair, worse), threshold), close)
+        let both = reaches(&logs(pair, close), threshold);
+        let completed =
+            || self.completed(pair, leader).is_some_and(|pair| reaches(&logs(pair, close), threshold));
+        let close = both || completed();
+        (both && reaches(&logs(pair, worse), threshold), close)
     }
 
     fn is_close(&mut self, rival: usize, leader: usize, threshold: f64) -> bool {
@@ -179,7 +204,8 @@ impl Table for Booleans {
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
         let factors = Factors::new(&self.bets, gap);
         rivals.iter().fold(f64::INFINITY, |least, rival| {
-            log_mean_below(&logs(self.pair(*rival, leader), &factors), least)
+            let pair = self.pair(*rival, leader);
+            log_mean_below(&self.logs(pair, leader, &factors), least)
         })
     }
 }

@@ -16,6 +16,7 @@ pub struct Each {
     /// Successes and trials of each arm with unresolved ones as failures, and unresolved ones.
     arms: Vec<(Counts, u64)>,
     pending: Vec<Share>,
+    deviations: Vec<f64>,
 }
 
 /// ceil(ln(2 k / delta) / (2 (epsilon / 2)^2)).
@@ -38,9 +39,18 @@ impl Each {
             word,
             arms: vec![(Counts::default(), 0); arms],
             pending: Vec::new(),
+            deviations: Vec::new(),
         };
         each.open_round();
         Ok(each)
+    }
+
+    /// Prefers arms by their deviations, one number per arm: the least decides among arms with the same shares, and among
+    /// those that are surely within epsilon of the best.
+    #[must_use]
+    pub fn preferring(mut self, deviations: Vec<f64>) -> Self {
+        self.deviations = deviations;
+        self
     }
 
     fn open_round(&mut self) {
@@ -119,14 +129,14 @@ impl Each {
 
     /// The choice, with a gap that holds at any time. Unresolved trials count against the chosen arm and for its rivals,
     /// and widen the gap.
-    pub fn choice(&self, deviations: Option<&[f64]>) -> Choice {
+    pub fn choice(&self) -> Choice {
         let k = self.arms.len();
         let middle = |arm: usize| {
             let (low, high) = self.shares(arm);
             low + high
         };
         let mut leader = 0;
-        let of = |arm: usize| deviations.and_then(|all| all.get(arm)).copied().unwrap_or(f64::INFINITY);
+        let of = |arm: usize| self.deviations.get(arm).copied().unwrap_or(f64::INFINITY);
         for arm in 1..k {
             // Of those with the same shares, but for a round of as many trials, the one that deviates least.
             let trials = |arm: usize| self.arms[arm].0.trials();
@@ -146,11 +156,9 @@ impl Each {
         };
         let certified: Vec<usize> = (0..k).filter(|arm| gap_of(*arm) <= self.epsilon + 1e-12).collect();
         let mut arm = leader;
-        if deviations.is_some() {
-            for other in &certified {
-                if of(*other) < of(arm) {
-                    arm = *other;
-                }
+        for other in &certified {
+            if of(*other) < of(arm) {
+                arm = *other;
             }
         }
         let open = (0..k).filter(|other| *other != arm && ends[*other].1 > ends[leader].0).collect();

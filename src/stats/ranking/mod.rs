@@ -54,7 +54,8 @@ pub struct Choice {
     pub certified: Vec<usize>,
 }
 
-/// Outcomes of many trials for each arm, and the evidence in their differences.
+/// Outcomes of many trials for each arm, and the evidence in their differences: over the trials that both have, or over
+/// all of the leader with the best outcome where the rival has none, whichever says more.
 pub trait Table {
     /// The outcome of one trial.
     type Outcome: Copy;

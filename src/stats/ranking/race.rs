@@ -6,8 +6,12 @@
 //! K(a*, a; epsilon) >= (k - 1)/delta at some time, because K rises in e; by Ville's inequality that has
 //! probability at most delta/(k - 1), and there are k - 1 rivals. Chains of eliminations are harmless, and
 //! so is adaptive sampling: every trial exists before it is looked at, and the bound holds for all prefixes.
+//!
+//! For the same reason a rival need not be tried as often as the leader. Were its missing trials the best there are, K would
+//! only be smaller; so what K reaches with them, it reaches in truth, at no further risk. A leader that hardly ever fails
+//! is certified by its own trials.
 
-use super::{Choice, Share, Table, certified, gap};
+use super::{Choice, Share, Table, bet, certified, gap};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
 use std::cmp::Ordering;
@@ -37,6 +41,8 @@ pub struct Race<T> {
     arms: usize,
     /// Arms that do not pass yet, with the evidence: room to work.
     failing: Vec<(usize, f64)>,
+    /// How far each arm is from what is wished: among equals the least comes first. Empty if there is no wish.
+    deviations: Vec<f64>,
     /// Whether a round is complete.
     decided: bool,
     finished: bool,
@@ -70,9 +76,19 @@ impl<T: Table> Race<T> {
             pending: if alone { Vec::new() } else { (0..arms).map(first).collect() },
             arms,
             failing: Vec::new(),
+            deviations: Vec::new(),
             decided: false,
             finished: alone,
         })
+    }
+
+    /// Prefers arms by their deviations, one number per arm: of those with the highest mean the least leads. It also
+    /// decides among arms that each carry the full certificate, and before there are any among those that came out
+    /// as the leader, trial by trial.
+    #[must_use]
+    pub fn preferring(mut self, deviations: Vec<f64>) -> Self {
+        self.deviations = deviations;
+        self
     }
 
     /// The trials that are wanted now: all of this round that were not fed yet, ascending by arm. Empty once
@@ -99,16 +115,47 @@ impl<T: Table> Race<T> {
         Ok(())
     }
 
-    /// The live arm with the highest mean; the first of equals. Who has had no trial is behind all who have.
+    fn deviation(&self, arm: usize) -> f64 {
+        self.deviations.get(arm).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The live arm with the highest mean; of equals the one that deviates least, or else the first. Two more trials, of
+    /// which one holds, keep those who were tried little from leading by luck. Who has had no trial is behind all who
+    /// have.
     fn ahead(&self) -> usize {
+        let mean = |arm: usize| {
+            let trials = self.table.trials(arm) as f64;
+            (self.table.mean(arm) * trials + 1.0) / (trials + 2.0)
+        };
+        let key = |arm: usize| (self.table.trials(arm) > 0, mean(arm));
         let mut best = self.live[0];
-        for arm in &self.live[1..] {
-            let (one, other) = (self.table.trials(*arm) > 0, self.table.trials(best) > 0);
-            if one && (!other || self.table.mean(*arm) > self.table.mean(best)) {
-                best = *arm;
+        for &arm in &self.live[1..] {
+            let (one, other) = (key(arm), key(best));
+            if one > other || one == other && self.deviation(arm) < self.deviation(best) {
+                best = arm;
             }
         }
         best
+    }
+
+    /// Whether the leader is likely to be certified sooner by trials of its own than by trials of all who are failing:
+    /// evidence grows on as it has so far.
+    fn leads_alone(&mut self) -> bool {
+        let growth = bet::growth(self.table.mean(self.leader), self.epsilon);
+        let mut alone = self.threshold / growth - self.table.trials(self.leader) as f64;
+        if growth <= 0.0 {
+            return false;
+        }
+        for (rival, _) in &self.failing {
+            let trials =
+                math::at_most(self.table.trials(*rival) as f64, self.table.trials(self.leader) as f64);
+            let (_, evidence) = self.table.evidence(*rival, self.leader, self.threshold);
+            if evidence <= 0.0 {
+                return true;
+            }
+            alone -= math::at_least(self.threshold / evidence - 1.0, 0.0) * trials;
+        }
+        alone <= 0.0
     }
 
     fn decide(&mut self) {
@@ -149,13 +196,17 @@ impl<T: Table> Race<T> {
             *failing = vec![least];
         }
         let most = failing.iter().fold(0, |most, (arm, _)| table.trials(*arm).max(most));
-        if table.trials(leader) <= most {
-            failing.push((leader, 0.0));
+        let is_behind = table.trials(leader) <= most;
+        if !one && self.leads_alone() {
+            self.failing.clear();
         }
-        failing.sort_unstable_by_key(|(arm, _)| *arm);
+        if is_behind || self.failing.is_empty() {
+            self.failing.push((leader, 0.0));
+        }
+        self.failing.sort_unstable_by_key(|(arm, _)| *arm);
         let word = self.word;
-        self.pending.extend(failing.iter().map(|(arm, _)| {
-            let from = table.trials(*arm);
+        self.pending.extend(self.failing.iter().map(|(arm, _)| {
+            let from = self.table.trials(*arm);
             Share { arm: *arm, from, to: from + word }
         }));
     }
@@ -194,34 +245,31 @@ impl<T: Table> Race<T> {
         gap::smallest(most, |gap| table.least_evidence(&rivals, arm, gap) - threshold)
     }
 
-    /// The choice now, at the end or at a deadline. With `deviations` (one number per arm), the least of
-    /// them decides among arms that each carry the full certificate, and before there are any among those that came out as the
-    /// leader, trial by trial; else the leader is chosen.
-    pub fn choice(&mut self, deviations: Option<&[f64]>) -> Choice {
+    /// The choice now, at the end or at a deadline.
+    pub fn choice(&mut self) -> Choice {
         if !self.decided {
             // No round is complete: the trials there are have to do.
             self.leader = self.ahead();
         }
         let live = self.live.clone();
-        let of = |arm: usize| deviations.and_then(|all| all.get(arm)).copied().unwrap_or(f64::INFINITY);
+        let deviations = &self.deviations;
+        let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
         let certified = if self.finished {
             certified::among(&mut self.table, &live, self.leader, self.threshold, &of)
         } else {
             Vec::new()
         };
         let mut arm = self.leader;
-        if deviations.is_some() {
-            // A decided race keeps its promise: only who carries the certificate takes the leader's place. Before that those
-            // that came out as the leader are as good as it, if they were tried as often, but for a round.
-            let (table, leader, word) = (&self.table, self.leader, self.word);
-            let alike = |other: &&usize| {
-                table.trials(**other).abs_diff(table.trials(leader)) < word && table.is_alike(**other, leader)
-            };
-            let others = if self.finished { &[][..] } else { &live };
-            for other in certified.iter().chain(others.iter().filter(alike)) {
-                if of(*other) < of(arm) {
-                    arm = *other;
-                }
+        // A decided race keeps its promise: only who carries the certificate takes the leader's place. Before that those
+        // that came out as the leader are as good as it, if they were tried as often, but for a round.
+        let (table, leader, word) = (&self.table, self.leader, self.word);
+        let alike = |other: &&usize| {
+            table.trials(**other).abs_diff(table.trials(leader)) < word && table.is_alike(**other, leader)
+        };
+        let others = if self.finished { &[][..] } else { &live };
+        for other in certified.iter().chain(others.iter().filter(alike)) {
+            if of(*other) < of(arm) {
+                arm = *other;
             }
         }
         // The certificate is at least what the stopping rule has checked.

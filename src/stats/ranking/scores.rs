@@ -1,7 +1,7 @@
 //! Scores in [0, 1] by trial index; a pair keeps the capital of each bet.
 
 use super::Table;
-use super::bet::{BETS, ROUNDING, bets, log_mean_below, log_mean_near};
+use super::bet::{BETS, ROUNDING, bets, log_mean, log_mean_below, log_mean_near};
 use crate::base::math;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -36,7 +36,8 @@ pub struct Scores {
 }
 
 impl Scores {
-    /// Adds the logarithms of the factors of trials `from .. to` for a gap.
+    /// Adds the logarithms of the factors of trials `from .. to` for a gap. Where the rival has no trial its score
+    /// is 1.
     fn add(&self, logs: &mut [f64; BETS], rival: usize, leader: usize, gap: f64, (from, to): (u64, u64)) {
         let (b, a) = (&self.arms[rival].greatest, &self.arms[leader].least);
         let mut start = from;
@@ -45,7 +46,7 @@ impl Scores {
             let end = if lattice < to { lattice } else { to };
             let mut products = [1.0; BETS];
             for t in start as usize..end as usize {
-                let excess = gap - (b[t] - a[t]);
+                let excess = gap - (b.get(t).copied().unwrap_or(1.0) - a[t]);
                 for (product, bet) in products.iter_mut().zip(&self.bets) {
                     *product *= 1.0 + bet * excess;
                 }
@@ -64,6 +65,18 @@ impl Scores {
         let common = self.common(rival, leader);
         self.add(&mut logs, rival, leader, gap, (whole(common), common));
         logs
+    }
+
+    /// The same over all trials of the leader: where the rival has none, its score is taken to be 1. Whichever of the two
+    /// says more.
+    fn completed(&self, plain: [f64; BETS], rival: usize, leader: usize, gap: f64) -> [f64; BETS] {
+        let (common, all) = (self.common(rival, leader), self.trials(leader));
+        if common == all {
+            return plain;
+        }
+        let mut logs = plain;
+        self.add(&mut logs, rival, leader, gap, (common, all));
+        if log_mean(&logs) > log_mean(&plain) { logs } else { plain }
     }
 
     fn common(&self, rival: usize, leader: usize) -> u64 {
@@ -118,6 +131,7 @@ impl Table for Scores {
         self.pairs.insert((rival, leader), pair);
         let worse = self.ended(pair.logs[0], rival, leader, 0.0);
         let close = self.ended(pair.logs[1], rival, leader, self.epsilon);
+        let close = self.completed(close, rival, leader, self.epsilon);
         (log_mean_near(&worse, threshold), log_mean_near(&close, threshold))
     }
 
@@ -131,7 +145,8 @@ impl Table for Scores {
         let Pair { trials, logs: [_, mut logs] } =
             self.pairs.get(&(rival, leader)).copied().unwrap_or_default();
         self.add(&mut logs, rival, leader, self.epsilon, (trials, whole(self.common(rival, leader))));
-        log_mean_near(&self.ended(logs, rival, leader, self.epsilon), threshold) >= threshold
+        let close = self.ended(logs, rival, leader, self.epsilon);
+        log_mean_near(&self.completed(close, rival, leader, self.epsilon), threshold) >= threshold
     }
 
     fn work(&self, rival: usize, leader: usize) -> u64 {
@@ -159,7 +174,7 @@ impl Table for Scores {
         rivals.iter().fold(f64::INFINITY, |least, rival| {
             let mut logs = [0.0; BETS];
             self.add(&mut logs, *rival, leader, gap, (0, self.common(*rival, leader)));
-            log_mean_below(&logs, least)
+            log_mean_below(&self.completed(logs, *rival, leader, gap), least)
         })
     }
 }
