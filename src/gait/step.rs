@@ -133,6 +133,17 @@ pub trait Gait: Debug {
     /// preferred speed over the person's own.
     fn step(&self, before: &Stance, foot: Foot, share: f64, draws: Draws) -> Stance;
 
+    /// Many such steps, each with its draws, from the same stance: what they have in common need be found only once.
+    fn steps(
+        &self,
+        before: &Stance,
+        foot: Foot,
+        share: f64,
+        draws: &mut dyn Iterator<Item = Draws>,
+    ) -> Vec<Stance> {
+        draws.map(|draws| self.step(before, foot, share, draws)).collect()
+    }
+
     /// The usual length of a step when walking, m.
     fn length(&self) -> f64;
 

@@ -18,7 +18,8 @@ pub(super) struct Pairs {
 }
 
 /// The nearest pairs found so far, nearest first.
-struct Found {
+#[derive(Clone, Debug)]
+pub(super) struct Found {
     squares: [f64; NEAREST],
     pairs: [usize; NEAREST],
     count: usize,
@@ -95,10 +96,15 @@ impl Pairs {
         }
     }
 
-    /// The residual of one of the pairs nearest to a place, chosen by a number in (0, 1).
-    pub(super) fn residual(&self, place: &Inputs, inputs: usize, choice: f64) -> Columns {
+    /// The pairs nearest to a place.
+    pub(super) fn nearest(&self, place: &Inputs, inputs: usize) -> Found {
         let mut found = Found { squares: [0.0; NEAREST], pairs: [0; NEAREST], count: 0 };
         self.search(&place[..inputs], 0, self.residuals.len(), 0, &mut found);
+        found
+    }
+
+    /// The residual of one of the nearest pairs, chosen by a number in (0, 1).
+    pub(super) fn residual(&self, found: &Found, choice: f64) -> Columns {
         let chosen = (choice * found.count as f64) as usize;
         self.residuals[found.pairs[chosen.min(found.count.saturating_sub(1))]]
     }
@@ -131,7 +137,8 @@ mod tests {
                 .collect();
             all.sort_by(|a, b| a.0.total_cmp(&b.0));
             for rank in 0..NEAREST {
-                let got = pairs.residual(&place, inputs, (rank as f64 + 0.5) / NEAREST as f64);
+                let found = pairs.nearest(&place, inputs);
+                let got = pairs.residual(&found, (rank as f64 + 0.5) / NEAREST as f64);
                 assert_eq!(got[0], all[rank].1 as f64, "{trial} {rank}");
             }
         }

@@ -3,7 +3,8 @@
 use super::basis::combined;
 use super::columns::{COLUMNS, Columns, DURATION, LENGTH, plus, seen_from};
 use super::density::normals;
-use super::{LearnedGait, Residuals, columns};
+use super::nearest::Found;
+use super::{LearnedGait, Residuals, Side, columns};
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::gait::{Draws, Foot, Gait, Shape, Stance};
@@ -87,28 +88,29 @@ impl Person {
         columns::shape(&plus(&self.gait.side(foot).basis.row(scaled), 1.0, self.offset(foot)))
     }
 
-    /// A step that follows one with the foot `last`.
-    pub(super) fn next(&self, last: Foot, shape: &Shape, began: bool, draws: Draws) -> Shape {
+    /// The steps that follow one with the foot `last`.
+    fn ahead(&self, last: Foot, shape: &Shape, began: bool) -> Ahead<'_> {
         let side = self.gait.side(last);
         let mut inputs = self.inputs(last, shape, began);
         let mut mean = [0.0; COLUMNS];
         let gaussian = self.gait.residuals == Residuals::Gaussian;
         let factor = side.transition.predict(&inputs, &mut mean, gaussian);
-        let residual = match self.gait.residuals {
+        let spread = match self.gait.residuals {
             Residuals::Nearest => {
                 let count = side.basis.components() + 1;
                 for (q, input) in inputs[..count].iter_mut().enumerate() {
                     *input /= side.transition.unit(q);
                 }
-                side.pairs.residual(&inputs, count, draws.uniform_pair(0)[0])
+                Spread::Nearest(side.pairs.nearest(&inputs, count))
             }
-            Residuals::Gaussian => {
-                let deviation = (factor / side.usual).sqrt();
-                combined(&side.gaussian, &normals(draws, 0)).map(|x| deviation * x)
-            }
+            Residuals::Gaussian => Spread::Gaussian { deviation: (factor / side.usual).sqrt() },
         };
-        let next = last.other();
-        self.shape(next, &plus(&self.gait.side(next).basis.spanned(&mean), 1.0, &residual))
+        Ahead { side, mean: self.gait.side(last.other()).basis.spanned(&mean), spread }
+    }
+
+    /// A step that follows one with the foot `last`.
+    pub(super) fn next(&self, last: Foot, shape: &Shape, began: bool, draws: Draws) -> Shape {
+        self.shape(last.other(), &self.ahead(last, shape, began).draw(draws))
     }
 
     /// The mean of the next scores less those of a step that followed, in standard deviations, and the logarithms of these.
@@ -122,23 +124,65 @@ impl Person {
     }
 }
 
-impl Gait for Person {
-    fn step(&self, before: &Stance, foot: Foot, share: f64, draws: Draws) -> Stance {
-        // A step is drawn as at the person's own speed and then brought to that of the share.
-        let log_share = math::ln(math::at_most(math::at_least(share, 0.1), 3.0));
-        let (shape, began) = match &before.last {
-            None => (self.shape(foot, &self.gait.side(foot).first.draw(draws)), true),
-            Some((last, shape)) => {
-                let own = self.at_speed(*last, *shape, before.drift[SHARE], true);
-                // Of two steps with the same foot the first one counts as its mirror image.
-                let row = seen_from(*last, &seen_from(foot.other(), &columns::of(&own)));
-                let began = before.drift[BEGAN] > 0.5;
-                (self.next(foot.other(), &columns::shape(&row), began, draws), false)
+/// The law of the steps that follow one step.
+struct Ahead<'p> {
+    side: &'p Side,
+    /// Their mean, in scaled columns of the other foot.
+    mean: Columns,
+    spread: Spread,
+}
+
+/// Around their mean.
+enum Spread {
+    Nearest(Found),
+    Gaussian { deviation: f64 },
+}
+
+impl Ahead<'_> {
+    /// One of them in scaled columns.
+    fn draw(&self, draws: Draws) -> Columns {
+        let residual = match &self.spread {
+            Spread::Nearest(found) => self.side.pairs.residual(found, draws.uniform_pair(0)[0]),
+            Spread::Gaussian { deviation } => {
+                combined(&self.side.gaussian, &normals(draws, 0)).map(|x| deviation * x)
             }
         };
+        plus(&self.mean, 1.0, &residual)
+    }
+}
+
+impl Gait for Person {
+    fn step(&self, before: &Stance, foot: Foot, share: f64, draws: Draws) -> Stance {
+        self.steps(before, foot, share, &mut std::iter::once(draws)).pop().unwrap_or_default()
+    }
+
+    fn steps(
+        &self,
+        before: &Stance,
+        foot: Foot,
+        share: f64,
+        draws: &mut dyn Iterator<Item = Draws>,
+    ) -> Vec<Stance> {
+        // A step is drawn as at the person's own speed and then brought to that of the share.
+        let log_share = math::ln(math::at_most(math::at_least(share, 0.1), 3.0));
+        let ahead = before.last.as_ref().map(|(last, shape)| {
+            let own = self.at_speed(*last, *shape, before.drift[SHARE], true);
+            // Of two steps with the same foot the first one counts as its mirror image.
+            let row = seen_from(*last, &seen_from(foot.other(), &columns::of(&own)));
+            self.ahead(foot.other(), &columns::shape(&row), before.drift[BEGAN] > 0.5)
+        });
         let mut drift = [0.0; 8];
-        (drift[BEGAN], drift[SHARE]) = (f64::from(began), log_share);
-        Stance { last: Some((foot, self.at_speed(foot, shape, log_share, false))), drift }
+        (drift[BEGAN], drift[SHARE]) = (f64::from(ahead.is_none()), log_share);
+        let scaled = |draws| match &ahead {
+            None => self.gait.side(foot).first.draw(draws),
+            Some(ahead) => ahead.draw(draws),
+        };
+        draws
+            .map(|draws| {
+                let shape = self.at_speed(foot, self.shape(foot, &scaled(draws)), log_share, false);
+                Stance { last: Some((foot, shape)), drift }
+            })
+            .collect()
     }
 
     fn length(&self) -> f64 {

@@ -63,15 +63,19 @@ pub(super) enum Change {
 }
 
 impl Walk<'_> {
-    /// A step from a pose, from which `way` leads to the goal; `None` if no way leads on from its end.
+    /// A step of the gait from a pose.
+    pub(super) fn drawn(&self, pose: &Pose, draws: Draws) -> Stance {
+        self.gait.step(&pose.stance, pose.foot, self.share, draws)
+    }
+
+    /// A drawn step from a pose, from which `way` leads to the goal; `None` if no way leads on from its end.
     pub(super) fn candidate(
         &self,
         pose: &Pose,
         way: &Way,
-        draws: Draws,
+        mut after: Stance,
         change: Change,
     ) -> Option<Candidate> {
-        let mut after = self.gait.step(&pose.stance, pose.foot, self.share, draws);
         let (foot, mut shape) = after.last?;
         let end = end_of(&shape);
         let own = || angle(Vec2::x(), shape.curve().tangent(1.0));

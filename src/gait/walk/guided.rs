@@ -31,31 +31,31 @@ pub(super) enum Rejected {
 }
 
 /// A choice among options by key (log weight and Gumbel noise): the best one that is clear, its gap to others weighed.
-pub(super) fn choose<T>(
-    mut options: Vec<(f64, T)>,
+pub(super) fn choose<T: Clone>(
+    options: &mut [(f64, T)],
     is_clear: impl Fn(&T) -> bool,
     gap: impl Fn(&T) -> Option<f64>,
 ) -> Result<(T, f64), Rejected> {
     options.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut best: Option<(f64, T, f64)> = None;
+    let mut best: Option<(f64, &T, f64)> = None;
     let mut rejected = Rejected::Barriers;
-    for (key, option) in options {
-        if best.as_ref().is_some_and(|(known, ..)| *known >= key) {
+    for (key, option) in options.iter() {
+        if best.is_some_and(|(known, ..)| known >= *key) {
             break;
         }
-        if !is_clear(&option) {
+        if !is_clear(option) {
             continue;
         }
-        let gap = gap(&option).unwrap_or(f64::INFINITY);
+        let gap = gap(option).unwrap_or(f64::INFINITY);
         match log_weight(gap) {
             None => rejected = Rejected::Bodies,
-            Some(log) if best.as_ref().is_none_or(|(known, ..)| *known < key + log) => {
+            Some(log) if best.is_none_or(|(known, ..)| known < key + log) => {
                 best = Some((key + log, option, gap));
             }
             Some(_) => {}
         }
     }
-    best.map(|(_, option, gap)| (option, gap)).ok_or(rejected)
+    best.map(|(_, option, gap)| (option.clone(), gap)).ok_or(rejected)
 }
 
 impl Walk<'_> {
@@ -73,33 +73,32 @@ impl Walk<'_> {
         others: Option<Gaps>,
     ) -> Result<(PlacedStep, Stance), Rejected> {
         let count = candidates.clamp(1, MOST);
-        let draw_from = |pose: &Pose, k: u32, change: &dyn Fn(f64) -> Change| {
+        let draws = |k: u32| Draws::of(self.stream, number, k);
+        let drawn = self.gait.steps(&pose.stance, pose.foot, self.share, &mut (0..count).map(draws));
+        let option = |pose: &Pose, k: u32, change: &dyn Fn(f64) -> Change| {
             let (noise, share) = self.choice(number, k);
-            let draws = Draws::of(self.stream, number, k);
-            let found = self.candidate(pose, way, draws, change(share))?;
+            let found = self.candidate(pose, way, drawn[(k % count) as usize], change(share))?;
             Some((noise - found.cost, found))
         };
-        let draw = |k: u32, change: &dyn Fn(f64) -> Change| draw_from(pose, k, change);
         let is_clear = |found: &Candidate| self.is_clear(&found.step) && self.goes_on(found);
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
         let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
-        let options = (0..count).filter_map(|k| draw(k, &steer(k))).collect();
-        let chosen = match choose(options, is_clear, gap) {
+        let mut options: Vec<_> = (0..count).filter_map(|k| option(pose, k, &steer(k))).collect();
+        let chosen = match choose(&mut options, is_clear, gap) {
             Ok((chosen, gap)) if gap >= WIDE => chosen,
             _ => {
-                // Somebody or a barrier is near: also steps to the side and shorter ones.
+                // Somebody or a barrier is near: the same steps to the side and shorter, too.
                 let swerve = |k: u32| {
                     let scale = 1.0 - 0.35 * f64::from(k % 3);
                     move |share| Change::Swerve(2.0 * share - 1.0, scale)
                 };
-                let plain = (0..count).filter_map(|k| draw(k, &steer(k)));
-                let more = (count..2 * count).filter_map(|k| {
+                options.extend((count..2 * count).filter_map(|k| {
                     // The path of somebody who stands may begin to the side.
                     let side =
                         if pose.stance.last.is_none() { ASIDE * f64::from(k % 5) - 2.0 * ASIDE } else { 0.0 };
-                    draw_from(&Pose { heading: rotated(pose.heading, side), ..*pose }, k, &swerve(k))
-                });
-                choose(plain.chain(more).collect(), is_clear, gap)?.0
+                    option(&Pose { heading: rotated(pose.heading, side), ..*pose }, k, &swerve(k))
+                }));
+                choose(&mut options, is_clear, gap)?.0
             }
         };
         Ok((chosen.step, chosen.after))

@@ -93,7 +93,9 @@ impl HybridAStar {
                 let [u, _] = draws(0, k).uniform_pair(Draws::COUNT - 1);
                 from.heading = rotated(pose.heading, (2.0 * u - 1.0) * PI);
             }
-            if let Some(found) = walk.candidate(&from, way, draws(0, k), change(k % self.successors.max(1))) {
+            if let Some(found) =
+                walk.candidate(&from, way, walk.drawn(&from, draws(0, k)), change(k % self.successors.max(1)))
+            {
                 tree.push(&found, left(&found), None, number);
             }
         }
@@ -122,7 +124,9 @@ impl HybridAStar {
                 return Err(NoStep::Limit { expansions });
             }
             for k in 0..self.successors.min(32) {
-                if let Some(found) = walk.candidate(&from, &way, draws(expansions, k), change(k)) {
+                if let Some(found) =
+                    walk.candidate(&from, &way, walk.drawn(&from, draws(expansions, k)), change(k))
+                {
                     tree.push(&found, left(&found), Some(at), next);
                 }
             }

@@ -54,7 +54,8 @@ impl Walk<'_> {
         };
         let is_clear = |chain: &Chain| chain.iter().all(|(step, _)| self.is_clear(step));
         let gap = |chain: &Chain| others.zip(chain.first()).map(|(others, (step, _))| others(step));
-        choose((0..candidates).filter_map(option).collect(), is_clear, gap).map(|(chain, _)| chain)
+        choose(&mut (0..candidates).filter_map(option).collect::<Vec<_>>(), is_clear, gap)
+            .map(|(chain, _)| chain)
     }
 
     fn last_option(&self, pose: &Pose, steps: u32, number: u32, candidate: u32) -> Option<(f64, Chain)> {
