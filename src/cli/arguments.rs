@@ -5,8 +5,11 @@ use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
-use super::values::{Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share};
+use super::values::{
+    Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
+};
 use super::walk::WalkCommand;
+use crate::data::tracks::Velocity;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -90,6 +93,10 @@ pub(super) struct Check {
     /// Property files (`.bltl`), or `-` for standard input.
     #[arg(required = true)]
     pub(super) properties: Vec<String>,
+    /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
+    /// set, as the tracks say, or else recorded.
+    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
+    pub(super) velocity: Option<Velocity>,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
@@ -147,6 +154,10 @@ pub(super) struct Simulate {
     /// The model.
     #[command(flatten)]
     pub(super) model: Model,
+    /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
+    /// set, as the tracks say, or else recorded.
+    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
+    pub(super) velocity: Option<Velocity>,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,

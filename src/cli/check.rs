@@ -350,5 +350,6 @@ fn line(arguments: &Check) -> CommandLine {
         properties: arguments.properties.clone(),
         settings: arguments.model.set.clone(),
         data: arguments.model.data.iter().map(|data| data.display().to_string()).collect(),
+        velocity: arguments.velocity.map(|velocity| velocity.name().to_owned()),
     }
 }

@@ -4,6 +4,7 @@
 use super::inputs::load_from;
 use super::values::Model;
 use crate::base::bytes::{Decoder, Encoder, Malformed};
+use crate::data::tracks::Velocity;
 use crate::library::Inputs;
 use std::collections::VecDeque;
 
@@ -47,6 +48,7 @@ impl FileCache {
 pub(super) fn pack(model: &Model, properties: &[String], cache: &FileCache) -> Vec<u8> {
     let mut to = Encoder::default();
     to.text(&model.scenario);
+    to.text(model.velocity.map_or("", Velocity::name));
     for list in [properties, &model.set] {
         to.whole(list.len() as u64);
         for text in list {
@@ -74,6 +76,7 @@ pub(super) fn pack(model: &Model, properties: &[String], cache: &FileCache) -> V
 pub(super) fn unpack(bytes: &[u8]) -> Result<Inputs, Malformed> {
     let mut from = Decoder::new(bytes);
     let scenario = from.text()?.to_owned();
+    let velocity = Velocity::from_name(from.text()?);
     let mut list =
         || (0..from.count()?).map(|_| from.text().map(str::to_owned)).collect::<Result<Vec<_>, _>>();
     let (properties, set) = (list()?, list()?);
@@ -87,7 +90,7 @@ pub(super) fn unpack(bytes: &[u8]) -> Result<Inputs, Malformed> {
         };
         opened.push_back((name, contents));
     }
-    let model = Model { scenario, set, data: Vec::new() };
+    let model = Model { scenario, set, data: Vec::new(), velocity };
     Ok(load_from(FileCache::Handed(opened), &model, &properties).inputs)
 }
 
@@ -101,7 +104,12 @@ mod tests {
         agent user: adult { at = (0, 0)  route = (5, 0) }\n";
 
     fn packed() -> Vec<u8> {
-        let model = Model { scenario: "-".to_owned(), set: vec!["n=3".to_owned()], data: Vec::new() };
+        let model = Model {
+            scenario: "-".to_owned(),
+            set: vec!["n=3".to_owned()],
+            data: Vec::new(),
+            velocity: Some(Velocity::Seen),
+        };
         let opened = vec![
             ("-".to_owned(), Ok(SCENARIO.as_bytes().to_vec())),
             ("a.bltl".to_owned(), Ok(b"estimate P(F<=1 s (travelled(user) > 1 m))".to_vec())),

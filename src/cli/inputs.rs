@@ -159,21 +159,21 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
     load_from(FileCache::Files, model, properties)
 }
 
+fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
+    Names { scenario: &model.scenario, properties, settings: &model.set, velocity: model.velocity }
+}
+
 /// Reads and parses what a call names.
 pub(super) fn parse(model: &Model, properties: &[String]) -> Parsed {
     let mut disk = Disk { cache: FileCache::Files, model, paths: Vec::new() };
-    read_all(Names { scenario: &model.scenario, properties, settings: &model.set }, &mut disk)
+    read_all(names(model, properties), &mut disk)
 }
 
 /// The same, with files from a cache.
 pub(super) fn load_from(cache: FileCache, model: &Model, properties: &[String]) -> Loaded {
     let mut disk = Disk { cache, model, paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
-    let mut inputs = if twice {
-        Inputs::default()
-    } else {
-        compile(Names { scenario: &model.scenario, properties, settings: &model.set }, &mut disk)
-    };
+    let mut inputs = if twice { Inputs::default() } else { compile(names(model, properties), &mut disk) };
     let mut errors = Vec::new();
     if twice {
         errors.push(Diagnostic::placeless(Code::E0701, "standard input can be read only once"));

@@ -42,7 +42,7 @@ pub fn run() -> process::ExitCode {
     if std::env::args_os().skip(1).eq([ranks::WORD]) {
         return process::ExitCode::from(rank().code());
     }
-    let arguments = match Arguments::try_parse() {
+    let mut arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if !error.use_stderr() => {
             let _ = error.print();
@@ -53,6 +53,11 @@ pub fn run() -> process::ExitCode {
             return process::ExitCode::from(Exit::Wrong.code());
         }
     };
+    match &mut arguments.command {
+        Command::Check(command) => command.model.velocity = command.velocity,
+        Command::Simulate(command) => command.model.velocity = command.velocity,
+        _ => {}
+    }
     let asked = if let Command::Check(check) = &arguments.command {
         Some((check.format, check.model.scenario.clone(), check.seed))
     } else {

@@ -16,6 +16,9 @@ pub(super) struct Model {
     /// Also search this folder for recordings and imports. May be given several times.
     #[arg(long = "data", value_name = "DIR")]
     pub(super) data: Vec<PathBuf>,
+    /// Which velocities recordings have, where the call says so.
+    #[arg(skip)]
+    pub(super) velocity: Option<Velocity>,
 }
 
 /// A probability, perhaps as a percentage.

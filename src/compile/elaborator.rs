@@ -97,6 +97,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) expanding: Vec<(ScopeId, String)>,
     /// Recordings read so far.
     pub(super) recordings: Vec<Option<Tracks>>,
+    /// Their names, and which velocities they have.
+    pub(super) velocities: Vec<(String, &'static str)>,
     /// Finds groups of people who are seen.
     pub(super) grouping: Option<Grouping>,
     /// Agents who are named and not seen, with their stable numbers: they never come.
@@ -229,6 +231,7 @@ impl<'a> Elaborator<'a> {
             constants: BTreeMap::new(),
             expanding: Vec::new(),
             recordings: Vec::new(),
+            velocities: Vec::new(),
             grouping: None,
             unseen: Vec::new(),
             gaits: BTreeMap::new(),

@@ -464,12 +464,13 @@ impl<'a> Compiler<'a> {
         };
         let described: Vec<_> = (0..self.sites.len()).map(named).collect();
         let mut worlds = Vec::with_capacity(self.sites.len());
-        let mut title = String::new();
+        let (mut title, mut tracks) = (String::new(), Vec::new());
         let sources: Arc<[Source]> = self.input.sources.into();
         for (site, settings) in self.sites.into_iter().zip(described) {
             let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
             let mut elaborator = site.elaborator;
+            tracks = std::mem::take(&mut elaborator.velocities);
             let written = elaborator.written(self.input.scenario);
             let kinds = elaborator.bodies();
             worlds.push(World {
@@ -486,7 +487,7 @@ impl<'a> Compiler<'a> {
                 origins: elaborator.origins,
             });
         }
-        (Some(Study { title, worlds, base: self.base, queries: self.queries }), diagnostics)
+        (Some(Study { title, tracks, worlds, base: self.base, queries: self.queries }), diagnostics)
     }
 }
 

@@ -16,6 +16,8 @@ use std::sync::Arc;
 pub struct Study {
     /// Title of the scenario.
     pub title: String,
+    /// The tracks of recordings that it reads, and which velocities they have: `seen` or `recorded`.
+    pub tracks: Vec<(String, &'static str)>,
     /// The scenario under each combination of parameter values that is asked about.
     pub worlds: Vec<World>,
     /// The world that the call is about: with the values of `--set`, of a sweep the first.

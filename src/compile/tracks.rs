@@ -36,7 +36,9 @@ impl<'a> Elaborator<'a> {
             (None, Some((format, path))) => self.recording(format, path, files).and_then(|recording| {
                 let (velocity, memory) = fields?;
                 let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);
-                Ok(Tracks::Recorded { recording: recording.with(velocity), memory })
+                let recording = recording.with(velocity);
+                self.velocities.push((name.name.to_string(), recording.velocity().name()));
+                Ok(Tracks::Recorded { recording, memory })
             }),
             (None, None) => {
                 let said = format!("`{}` is a stream, which only `smc advise` can read", name.name);

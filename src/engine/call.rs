@@ -33,6 +33,8 @@ pub struct CommandLine {
     pub settings: Vec<String>,
     /// Values of `--data`.
     pub data: Vec<String>,
+    /// Value of `--velocity`.
+    pub velocity: Option<String>,
 }
 
 impl CommandLine {
@@ -74,6 +76,9 @@ impl CommandLine {
         }
         for data in &self.data {
             words.extend(["--data".to_owned(), quoted(data)]);
+        }
+        if let Some(velocity) = &self.velocity {
+            words.extend(["--velocity".to_owned(), quoted(velocity)]);
         }
         words.join(" ")
     }
@@ -122,6 +127,7 @@ mod tests {
             properties: vec!["a.bltl".into()],
             settings: vec!["n=2".into(), "d=0.1..0.8 by 0.1".into(), "gap=1 m".into()],
             data: vec!["my data".into()],
+            velocity: None,
         };
         assert_eq!(
             line.check(),

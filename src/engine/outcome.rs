@@ -31,6 +31,8 @@ pub use witness::{Shows, Witness};
 pub struct CallResult {
     /// Title of the scenario, or its file where it has none.
     pub scenario: String,
+    /// The tracks that it reads, and which velocities they have: `seen` or `recorded`.
+    pub tracks: Vec<(String, &'static str)>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Version of the program.

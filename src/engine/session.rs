@@ -96,6 +96,7 @@ pub fn run(
     let results: Vec<QueryResult> = results.into_iter().flatten().collect();
     Ok(CallResult {
         scenario: if study.title.is_empty() { call.line.scenario.clone() } else { study.title.clone() },
+        tracks: study.tracks.clone(),
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         inputs: Vec::new(),

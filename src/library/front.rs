@@ -5,6 +5,7 @@ use super::refusal::refusal;
 use crate::advise::groups;
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, Starts, Study, examine, own_errors, requests};
+use crate::data::tracks::Velocity;
 use crate::engine::overfull_starts;
 use crate::syntax::ast::{Expr, Item, PropertyFile, PropertyItem, ScenarioFile, Values};
 use crate::syntax::codes::Code;
@@ -50,6 +51,8 @@ pub struct Names<'a> {
     pub properties: &'a [String],
     /// Values of parameters: `density=0.8 /m^2`, or a sweep: `density=0.1..0.8 by 0.1`, `n=2,4,8`.
     pub settings: &'a [String],
+    /// Which velocities recordings have, whatever the scenario says.
+    pub velocity: Option<Velocity>,
 }
 
 /// All that was read, and what was found wrong with it.
@@ -131,6 +134,7 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     let in_files = reader.inputs.sources.len();
     let settings: Vec<Setting> = names.settings.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::grouped_by(groups);
+    files.velocity = names.velocity;
     for request in requests(&scenario) {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {

@@ -83,8 +83,10 @@ impl Draft {
         let names: Vec<String> = properties.iter().map(|(name, _)| (*name).to_owned()).collect();
         let settings = self.assignments();
         let mut given = Given { draft: self, properties: properties.map_or("", |(_, text)| text) };
-        let Inputs { sources, diagnostics, study, .. } =
-            load(Names { scenario: &self.name, properties: &names, settings: &settings }, &mut given);
+        let Inputs { sources, diagnostics, study, .. } = load(
+            Names { scenario: &self.name, properties: &names, settings: &settings, velocity: None },
+            &mut given,
+        );
         let found = Diagnostics::new(diagnostics, sources.clone());
         study.map_or(Err(found.clone()), |study| Ok((study, sources, found)))
     }
@@ -185,7 +187,7 @@ impl Model {
             scenario: self.draft.name.clone(),
             properties: vec![name.to_owned()],
             settings: self.draft.assignments(),
-            data: Vec::new(),
+            ..CommandLine::default()
         };
         let ways = Ways::default();
         let doubts =

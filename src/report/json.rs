@@ -23,6 +23,7 @@ pub fn render(run: &CallResult) -> String {
 pub fn object(run: &CallResult) -> Value {
     let inputs: Vec<Value> =
         run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
+    let velocities = |(name, velocity): &(String, &str)| json!({ "name": name, "velocity": velocity });
     let mut object = json!({
         "schema": 2,
         "scenario": run.scenario,
@@ -33,6 +34,7 @@ pub fn object(run: &CallResult) -> Value {
         "warnings": run.warnings,
         "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
         "inputs": inputs,
+        "tracks": run.tracks.iter().map(velocities).collect::<Vec<_>>(),
         "interrupted": run.interrupted,
         "error": Value::Null,
         "replay": run.replay,

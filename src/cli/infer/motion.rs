@@ -52,7 +52,8 @@ fn social_force(arguments: &InferCommand, colors: Colors) -> Result<ChosenMotion
         let motion = of_kind(kind, None, Vec::new()).map_err(|error| vec![error])?;
         return Ok(ChosenMotion { motion, kind: Some(kind.to_owned()), paths: Vec::new() });
     };
-    let model = Model { scenario: scenario.clone(), set: Vec::new(), data: arguments.data.clone() };
+    let model =
+        Model { scenario: scenario.clone(), set: Vec::new(), data: arguments.data.clone(), velocity: None };
     let inputs::Loaded { inputs, paths, .. } = inputs::load(&model, &[]);
     complaint::diagnose(&inputs, colors);
     let world = inputs.study.as_ref().and_then(|study| study.worlds.get(study.base)).ok_or_else(Vec::new)?;

@@ -70,8 +70,12 @@ pub(super) fn run(arguments: &PathCommand, colors: Colors) -> Exit {
 
 /// The paths of the walkers of a scenario, from where they start in a trial.
 fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<String, Exit> {
-    let model =
-        Model { scenario: scenario.to_owned(), set: arguments.set.clone(), data: arguments.data.clone() };
+    let model = Model {
+        scenario: scenario.to_owned(),
+        set: arguments.set.clone(),
+        data: arguments.data.clone(),
+        velocity: None,
+    };
     let inputs = inputs::load(&model, &[]).inputs;
     complaint::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Err(Exit::Wrong) };

@@ -20,7 +20,11 @@ use std::fmt::Write as _;
 pub fn render(run: &CallResult, palette: Palette) -> String {
     let mut text = String::new();
     if !run.scenario.is_empty() {
-        let _ = writeln!(text, "{}\n", palette.paint(Paint::Strong, &run.scenario));
+        let _ = writeln!(text, "{}", palette.paint(Paint::Strong, &run.scenario));
+        for (name, velocity) in &run.tracks {
+            let _ = writeln!(text, "velocities of the tracks `{name}`: {velocity}");
+        }
+        text.push('\n');
     }
     for group in by_query(&run.results).chunk_by(|a, b| same_sweep(a, b)) {
         match group {
