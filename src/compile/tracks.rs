@@ -37,7 +37,7 @@ impl<'a> Elaborator<'a> {
                 let (velocity, memory) = fields?;
                 let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);
                 let recording = recording.with(velocity);
-                self.velocities.push((name.name.to_string(), recording.velocity().name()));
+                self.velocities.push((name.name.clone(), recording.velocity().name()));
                 Ok(Tracks::Recorded { recording, memory })
             }),
             (None, None) => {

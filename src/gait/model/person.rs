@@ -133,6 +133,10 @@ struct Ahead<'p> {
 }
 
 /// Around their mean.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one at a time, on the stack: a box would be allocated for each step"
+)]
 enum Spread {
     Nearest(Found),
     Gaussian { deviation: f64 },
