@@ -440,10 +440,11 @@ fn may_be_none(num: &Num) -> bool {
     match num {
         Num::Constant(value) => !value.is_finite(),
         Num::Of(field, _) => field.may_be_infinite(),
-        Num::Time | Num::OfSet(..) | Num::Count(..) => false,
+        Num::Time | Num::OfSet(..) | Num::Count(..) | Num::Crossings(..) | Num::Voronoi(_) => false,
         Num::Distance(a, b) => nowhere(a) || nowhere(b),
         Num::Coordinate(_, place) | Num::Depth(place, _) => nowhere(place),
         Num::Variable(_) | Num::OfTwo(..) | Num::Fold(..) => true,
+        Num::Apply(Function::ServiceLevel, _) => false,
         Num::Apply(function, a) => {
             !matches!(function, Function::Negate | Function::Abs | Function::Sin | Function::Cos)
                 || may_be_none(a)

@@ -9,7 +9,7 @@ use super::number::Number;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
-use crate::model::{Barrier, BarrierId, BuiltIn, Obstacle, Region, RegionId};
+use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -39,13 +39,24 @@ impl<'a> Elaborator<'a> {
                     }
                 }
                 SceneItem::Point { name, at } => self.enter(name, Meaning::Point(at)),
+                SceneItem::Line { name, .. } => {
+                    let id = LineId(self.scene.lines.len() as u32);
+                    let nowhere = Segment::new(Vec2::zeros(), Vec2::zeros());
+                    self.scene.lines.push(Line { name: name.name.clone(), segment: nowhere });
+                    self.enter(name, Meaning::Line(id));
+                }
                 SceneItem::Import { .. } => {}
             }
         }
     }
 
-    /// Settles the shapes of a scene; `next` is the number of its first barrier.
-    pub(super) fn settle_scene(&mut self, items: &'a [SceneItem], files: &Files, next: &mut usize) {
+    /// Settles the shapes of a scene; `next` and `line` are the numbers of its first barrier and its first line.
+    pub(super) fn settle_scene(
+        &mut self,
+        items: &'a [SceneItem],
+        files: &Files,
+        (next, line): (&mut usize, &mut usize),
+    ) {
         let mut imports = Vec::new();
         for item in items {
             match item {
@@ -76,6 +87,12 @@ impl<'a> Elaborator<'a> {
                     Ok(at) => self.scene.points.push((name.name.clone(), at)),
                     Err(Reported) => self.doubt(0, &name.name),
                 },
+                SceneItem::Line { ends, span, .. } => {
+                    if let Ok(segment) = self.line(ends, *span) {
+                        self.scene.lines[*line].segment = segment;
+                    }
+                    *line += 1;
+                }
                 SceneItem::Import { path, walkable, filter, fields, .. } => {
                     imports.push(Import { path, walkable: *walkable, filter: filter.as_ref(), fields });
                 }
@@ -120,6 +137,16 @@ impl<'a> Elaborator<'a> {
             .filter(|pair| pair[0] != pair[1])
             .map(|pair| Segment::new(pair[0], pair[1]))
             .collect())
+    }
+
+    fn line(&mut self, ends: &[Expr; 2], span: Span) -> Lowered<Segment> {
+        let [a, b] = ends.each_ref().map(|end| self.corner(end));
+        let segment = Segment::new(a?, b?);
+        if segment.a == segment.b {
+            let error = Diagnostic::error(Code::E0401, span, "the line has no length");
+            return self.report(error.hint("write two different points: `line door: (3, 0) -- (3, 2)`"));
+        }
+        Ok(segment)
     }
 
     fn corner(&mut self, point: &Expr) -> Lowered<Vec2> {

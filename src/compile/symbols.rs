@@ -1,7 +1,7 @@
 //! Names and what they stand for. Order of declaration does not matter; each name has one meaning.
 
 use super::nearest::nearest;
-use crate::model::{AgentId, BarrierId, BehaviourId, RegionId};
+use crate::model::{AgentId, BarrierId, BehaviourId, LineId, RegionId};
 use crate::syntax::ast::{Expr, Ident, KindDecl, LetDecl, ShapeExpr};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -32,6 +32,8 @@ pub(super) enum Meaning<'a> {
     Region(RegionId, &'a ShapeExpr),
     /// A wall or obstacle.
     Barrier(BarrierId),
+    /// A measurement line.
+    Line(LineId),
     /// A named point.
     Point(&'a Expr),
     /// A kind.
@@ -67,6 +69,7 @@ impl Meaning<'_> {
             Self::Tracks(_) => Some(3),
             Self::Process(_) => Some(4),
             Self::Behaviour(_) => Some(5),
+            Self::Line(_) => Some(6),
             // Numbers have units, functions arguments, of several people one is chosen.
             _ => None,
         };
@@ -83,6 +86,7 @@ impl Meaning<'_> {
             Self::Property(_) => "a property",
             Self::Region(..) => "a region",
             Self::Barrier(_) => "a wall or obstacle",
+            Self::Line(_) => "a line",
             Self::Point(_) => "a point",
             Self::Kind(_) => "a kind",
             Self::Tracks(_) => "a recording",

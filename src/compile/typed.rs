@@ -4,7 +4,7 @@ use super::dimension::{Dimension, describe};
 use super::number::Number;
 use super::study::Part;
 use crate::logic::{NodeId, TermId};
-use crate::model::{BarrierId, BehaviourId, Bool, Num, RegionId, Set, Who};
+use crate::model::{BarrierId, BehaviourId, Bool, LineId, Num, RegionId, Set, Who};
 use std::sync::Arc;
 
 /// The type of an expression, with its value as far as it is known.
@@ -53,6 +53,8 @@ pub(super) enum Typed {
     Region(RegionId),
     /// A wall or obstacle.
     Barrier(BarrierId),
+    /// A measurement line.
+    Line(LineId),
     /// A formula over states.
     Formula(NodeId),
     /// A number of the states from the present one on.
@@ -94,6 +96,7 @@ impl Typed {
             Self::Mode { .. } => "a behaviour, whose state is compared: `user.phone == looking`".to_owned(),
             Self::Region(_) => "a region".to_owned(),
             Self::Barrier(_) => "a wall or obstacle".to_owned(),
+            Self::Line(_) => "a line".to_owned(),
             Self::Formula(_) => "a temporal formula".to_owned(),
             Self::Tally(_) => "a count of temporal formulas".to_owned(),
         }

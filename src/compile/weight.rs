@@ -44,7 +44,9 @@ impl<'p> Part<'p> {
                 | Num::Variable(_)
                 | Num::Of(..)
                 | Num::OfTwo(..)
-                | Num::OfSet(..) => {}
+                | Num::OfSet(..)
+                | Num::Crossings(..)
+                | Num::Voronoi(_) => {}
             },
             Self::Bool(truth) => match truth {
                 Bool::Compare(_, a, b) => {

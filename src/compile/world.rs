@@ -177,10 +177,10 @@ impl<'a> Elaborator<'a> {
         }
         self.grouping = files.grouping;
         self.settle_gaits(file, files);
-        let mut barrier = 0;
+        let (mut barrier, mut line) = (0, 0);
         for item in &file.items {
             if let Item::Scene(items) = item {
-                self.settle_scene(items, files, &mut barrier);
+                self.settle_scene(items, files, (&mut barrier, &mut line));
             }
         }
         let mut people = People::default();

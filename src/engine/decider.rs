@@ -130,11 +130,15 @@ fn dimension(scenario: &Scenario, num: &Num) -> Option<Dimension> {
         Num::Of(field, _) => field.dimension()?,
         Num::OfTwo(pair, ..) => pair.dimension()?,
         Num::OfSet(collective, _) => collective.dimension()?,
+        Num::Voronoi(_) => Dimension::DENSITY,
         Num::Coordinate(..) | Num::Distance(..) | Num::Depth(..) => Dimension::LENGTH,
         Num::Apply(Function::Sqrt, a) => of(a)?.root()?,
-        Num::Apply(Function::Exp | Function::Ln | Function::Sin | Function::Cos, _) | Num::Count(..) => {
-            Dimension::NONE
-        }
+        Num::Apply(
+            Function::Exp | Function::Ln | Function::Sin | Function::Cos | Function::ServiceLevel,
+            _,
+        )
+        | Num::Count(..)
+        | Num::Crossings(..) => Dimension::NONE,
         Num::Apply(_, a) | Num::Fold(Fold::Min | Fold::Max | Fold::Sum | Fold::Mean, _, a) => of(a)?,
         Num::Combine(Arithmetic::Multiply, a, b) => of(a)?.times(of(b)?)?,
         Num::Combine(Arithmetic::Divide, a, b) => of(a)?.over(of(b)?)?,

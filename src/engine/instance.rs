@@ -30,7 +30,7 @@ pub(super) fn instantiate_num(num: &Num, depth: u32, id: AgentId) -> Num {
     let n = |inner: &Num| Box::new(instantiate_num(inner, depth, id));
     let b = |inner: &Bool| Box::new(instantiate_bool(inner, depth, id));
     match num {
-        Num::Constant(_) | Num::Time | Num::Variable(_) => num.clone(),
+        Num::Constant(_) | Num::Time | Num::Variable(_) | Num::Crossings(..) | Num::Voronoi(_) => num.clone(),
         Num::Of(field, w) => Num::Of(*field, who(*w, depth, id)),
         Num::Coordinate(axis, p) => Num::Coordinate(*axis, place(p, depth, id)),
         Num::Distance(p, q) => Num::Distance(place(p, depth, id), place(q, depth, id)),

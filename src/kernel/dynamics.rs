@@ -142,6 +142,10 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
         scratch.lanewise.forget();
     }
     driver::steer_at(scratch.level, &program.drive, state);
+    if !program.passing.is_empty() {
+        let from = (scratch.seen_x.as_slice(), scratch.seen_y.as_slice());
+        program.passing.step(scratch.level, state, from, &scratch.moving);
+    }
     // Who comes to a place that is left in this step has not made it.
     for (moving, &here) in scratch.moving.iter_mut().zip(&state.present) {
         *moving &= here;

@@ -20,6 +20,7 @@ mod near;
 pub mod noise;
 mod pace;
 mod parameters;
+mod passing;
 pub mod plan;
 pub mod process;
 pub mod program;

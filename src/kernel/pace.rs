@@ -114,6 +114,7 @@ impl<'s> Pace<'s> {
                     Function::Sqrt => (0.0, at_least(high, 0.0).sqrt()),
                     Function::Sin | Function::Cos => (-1.0, 1.0),
                     Function::Floor | Function::Ceil | Function::Round => (low.floor(), high.ceil()),
+                    Function::ServiceLevel => (1.0, 6.0),
                     Function::Exp | Function::Ln => ANYTHING,
                 }
             }

@@ -7,6 +7,7 @@ use super::force::Forces;
 use super::near::Close;
 use super::noise::Noise;
 use super::parameters::Parameters;
+use super::passing::Passing;
 use super::process::Processes;
 use super::start::{Arrivals, Starts};
 use super::state::{Layout, State};
@@ -43,6 +44,8 @@ pub struct Program {
     pub arrivals: Arrivals,
     /// The behaviours.
     pub behaviours: Behaviours,
+    /// The lines and regions that formulas ask about.
+    pub passing: Passing,
 }
 
 impl Program {
@@ -62,6 +65,7 @@ impl Program {
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
         let arrivals = Arrivals::new(&scenario);
+        let passing = Passing::new(&scenario.scene);
         let behaviours = Behaviours::new(&scenario, &mut drive);
         Self {
             scenario,
@@ -75,6 +79,7 @@ impl Program {
             processes,
             arrivals,
             behaviours,
+            passing,
         }
     }
 }

@@ -16,6 +16,7 @@ use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::model::AgentId;
+use fearless_simd::Level;
 use std::borrow::Cow;
 
 /// The address of a trial.
@@ -122,6 +123,7 @@ impl<'p> Run<'p> {
     /// and legs go on from the state before, which belongs to the tick before.
     pub fn show(&mut self, tick: u64, mut seen: impl FnMut(AgentId) -> Option<(Vec2, Vec2)>) {
         self.state.ticks[0] = tick;
+        let before = (self.state.motion.x.clone(), self.state.motion.y.clone(), self.state.present.clone());
         let all: Vec<_> = (0..self.state.agents).map(|agent| seen(AgentId(agent as u32))).collect();
         for (agent, shown) in all.iter().enumerate() {
             let slot = self.state.slot(agent, 0);
@@ -146,6 +148,11 @@ impl<'p> Run<'p> {
                 (motion.vx[block].0[lane], motion.vy[block].0[lane]) = (velocity.x, velocity.y);
                 self.state.present[block] |= Mask::lane(lane);
             }
+        }
+        if !self.program.passing.is_empty() {
+            let (x, y, was) = before;
+            let moved: Vec<Mask> = was.iter().zip(&self.state.present).map(|(was, is)| *was & *is).collect();
+            self.program.passing.step(Level::new(), &mut self.state, (&x, &y), &moved);
         }
     }
 

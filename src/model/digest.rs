@@ -37,6 +37,8 @@ impl Hash for Num {
             Self::Distance(a, b) => (a, b).hash(state),
             Self::Depth(place, region) => (place, region.0).hash(state),
             Self::OfTwo(pair, a, b) => (pair, a, b).hash(state),
+            Self::Crossings(line, window) => (line, window).hash(state),
+            Self::Voronoi(region) => region.hash(state),
             Self::OfSet(collective, set) => (collective, set).hash(state),
             Self::Apply(function, a) => (function, a).hash(state),
             Self::Combine(operator, a, b) => (operator, a, b).hash(state),

@@ -25,6 +25,7 @@ impl Function {
             Self::Floor => x.floor(),
             Self::Ceil => x.ceil(),
             Self::Round => x.round(),
+            Self::ServiceLevel => service_level(x),
         }
     }
 }
@@ -59,6 +60,14 @@ impl Arithmetic {
             Self::Agree => Self::Max.of(Self::Min.of(a, b), Self::Min.of(-a, -b)),
         }
     }
+}
+
+/// The least area per person of the levels of service A to E of a walkway, m² (Fruin 1971: 35, 25, 15, 10 and 5 square feet).
+const LEAST_AREAS: [f64; 5] = [3.24, 2.32, 1.39, 0.93, 0.46];
+
+/// The level of service of an area per person, m²: 1 for A to 6 for F.
+fn service_level(area: f64) -> f64 {
+    LEAST_AREAS.iter().fold(1.0, |level, least| if area < *least { level + 1.0 } else { level })
 }
 
 /// The remainder with the sign of the divisor. The remainder of truncating division is exact.

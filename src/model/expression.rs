@@ -5,7 +5,7 @@
 use super::agent::AgentId;
 use super::function::{Collective, Field, Pair};
 use super::index::VariableId;
-use super::scene::{BarrierId, RegionId};
+use super::scene::{BarrierId, LineId, RegionId};
 use std::sync::Arc;
 
 /// An agent: a fixed one, or the one that the n-th enclosing fold or quantifier runs over, counted
@@ -113,6 +113,8 @@ pub enum Function {
     Ceil,
     /// Nearest whole number, halves away from zero.
     Round,
+    /// Level of service of an area per person, m²: 1 for A to 6 for F.
+    ServiceLevel,
 }
 
 /// Comparisons.
@@ -154,6 +156,11 @@ pub enum Num {
     OfTwo(Pair, Who, Who),
     /// A number of a set.
     OfSet(Collective, Set),
+    /// How many agents have crossed a line, each counted once; with a number of ticks, only in the last so many. It has no
+    /// value before the end of so many ticks.
+    Crossings(LineId, Option<u64>),
+    /// Voronoi density of a region, 1/m².
+    Voronoi(RegionId),
     /// A function of a number.
     Apply(Function, Box<Num>),
     /// Arithmetic of two numbers.

@@ -3,6 +3,7 @@
 
 use super::expression::{Arithmetic, Axis, Function};
 use super::index::BehaviourId;
+use super::scene::RegionId;
 use crate::base::dimension::Dimension;
 
 /// A number of one agent.
@@ -30,6 +31,8 @@ pub enum Field {
     StepCount,
     /// When the last goal is reached and pauses are over, s; infinite until that is known.
     DoneAt,
+    /// Time in a region so far, s.
+    Dwell(RegionId),
     /// A number of a leg, from 0; infinite until it ends.
     Leg(LegMeasure, u32),
     /// How far others are.
@@ -99,13 +102,18 @@ pub enum Special {
     Component(Axis),
     Contact,
     Count,
+    Crossings,
     Density,
     Distance,
     Done,
+    Dwell,
+    Flow,
     Leg(LegMeasure),
     /// `min` and `max` of several numbers.
     Extremum(Arithmetic),
     If,
+    LevelOfService,
+    MeanSpeed,
     /// `sum` and `mean`, which join values over a set or over time only.
     Join,
     Members,
@@ -116,6 +124,7 @@ pub enum Special {
     Robustness,
     TimeUntil,
     Velocity,
+    VoronoiDensity,
 }
 
 /// The dimension of what a function gives, as far as its arguments tell it.
@@ -149,6 +158,7 @@ pub struct BuiltIn {
 const NONE: Rule = Rule::Always(Dimension::NONE);
 const LENGTH: Rule = Rule::Always(Dimension::LENGTH);
 const SPEED: Rule = Rule::Always(Dimension::SPEED);
+const TIME: Rule = Rule::Always(Dimension::TIME);
 const ANGLE: Rule = Rule::Always(Dimension::ANGLE);
 
 const fn agent(name: &'static str, field: Field, dimension: Rule) -> BuiltIn {
@@ -196,22 +206,27 @@ pub const FUNCTIONS: &[BuiltIn] = &[
     special("contact", (1, 2), Special::Contact, Rule::Open),
     number("cos", Function::Cos, Some(Dimension::ANGLE), NONE),
     special("count", (1, 1), Special::Count, NONE),
+    special("crossings", (1, 1), Special::Crossings, NONE),
     special("density", (1, 1), Special::Density, Rule::Always(Dimension::DENSITY)),
     special("distance", (2, 2), Special::Distance, LENGTH),
     special("done", (1, 1), Special::Done, Rule::Open),
     agent("driving_speed", Field::DrivingSpeed, SPEED),
+    special("dwell", (2, 2), Special::Dwell, TIME),
     number("exp", Function::Exp, Some(Dimension::NONE), NONE),
     number("floor", Function::Floor, Some(Dimension::NONE), NONE),
+    special("flow", (2, 2), Special::Flow, Rule::Always(Dimension::RATE)),
     agent("heading", Field::Heading, ANGLE),
     special("if", (3, 3), Special::If, Rule::Same(1)),
     special("leg_length", (2, 2), Special::Leg(LegMeasure::Length), LENGTH),
     special("leg_steps", (2, 2), Special::Leg(LegMeasure::Steps), NONE),
-    special("leg_time", (2, 2), Special::Leg(LegMeasure::Time), Rule::Always(Dimension::TIME)),
+    special("leg_time", (2, 2), Special::Leg(LegMeasure::Time), TIME),
     agent("legs", Field::Legs, NONE),
+    special("level_of_service", (1, 1), Special::LevelOfService, NONE),
     number("ln", Function::Ln, Some(Dimension::NONE), NONE),
     agent("mass", Field::Mass, Rule::Always(Dimension::MASS)),
     special("max", (2, usize::MAX), Special::Extremum(Arithmetic::Max), Rule::Same(0)),
     special("min", (2, usize::MAX), Special::Extremum(Arithmetic::Min), Rule::Same(0)),
+    special("mean_speed", (1, 1), Special::MeanSpeed, SPEED),
     special("members", (1, 1), Special::Members, Rule::Open),
     numbers("modulo", Arithmetic::Modulo, Rule::Same(0)),
     special("norm", (1, 1), Special::Norm, Rule::Open),
@@ -228,10 +243,11 @@ pub const FUNCTIONS: &[BuiltIn] = &[
     agent("step_count", Field::StepCount, NONE),
     special("sum", (1, 1), Special::Join, Rule::Open),
     special("mean", (1, 1), Special::Join, Rule::Open),
-    agents("time_to_collision", Pair::TimeToCollision, Rule::Always(Dimension::TIME)),
+    agents("time_to_collision", Pair::TimeToCollision, TIME),
     special("time_until", (1, 1), Special::TimeUntil, Rule::Clock),
     agent("travelled", Field::Travelled, LENGTH),
     special("velocity", (1, 1), Special::Velocity, Rule::Open),
+    special("voronoi_density", (1, 1), Special::VoronoiDensity, Rule::Always(Dimension::DENSITY)),
     special("x", (1, 1), Special::Component(Axis::X), Rule::Open),
     special("y", (1, 1), Special::Component(Axis::Y), Rule::Open),
 ];
@@ -268,7 +284,7 @@ impl Field {
     pub fn dimension(self) -> Option<Dimension> {
         match self {
             Self::VelocityX | Self::VelocityY => Some(Dimension::SPEED),
-            Self::DoneAt => Some(Dimension::TIME),
+            Self::DoneAt | Self::Dwell(_) => Some(Dimension::TIME),
             Self::Leg(measure, _) => dimension(Signature::Special(Special::Leg(measure))),
             field => dimension(Signature::Agent(field)),
         }

@@ -15,7 +15,8 @@ impl Num {
         };
         match self {
             Self::Constant(_) | Self::Time | Self::Variable(_) | Self::Of(..) | Self::OfTwo(..) => false,
-            Self::OfSet(..) | Self::Fold(Fold::Mean, ..) => true,
+            Self::OfSet(..) | Self::Fold(Fold::Mean, ..) | Self::Crossings(_, Some(_)) => true,
+            Self::Crossings(_, None) | Self::Voronoi(_) => false,
             Self::Coordinate(_, place) | Self::Depth(place, _) => lacks(place),
             Self::Distance(a, b) => lacks(a) || lacks(b),
             Self::Apply(_, a) | Self::Fold(_, _, a) => a.may_lack_value(),

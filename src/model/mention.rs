@@ -40,7 +40,7 @@ impl Num {
     /// Tells of each agent that is named, perhaps more than once.
     pub fn mentions(&self, tell: Tell<'_>) {
         match self {
-            Self::Constant(_) | Self::Time | Self::Variable(_) => {}
+            Self::Constant(_) | Self::Time | Self::Variable(_) | Self::Crossings(..) | Self::Voronoi(_) => {}
             Self::Of(_, who) => who.mentions(tell),
             Self::Coordinate(_, place) | Self::Depth(place, _) => place.mentions(tell),
             Self::OfSet(_, set) => set.mentions(tell),

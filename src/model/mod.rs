@@ -33,7 +33,7 @@ pub use parameter::{PARAMETERS, Parameter, TOP_SPEED};
 pub use planner::{Planner, RoadmapRule, SpeedRule};
 pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable};
 pub use scenario::Scenario;
-pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};
+pub use scene::{Barrier, BarrierId, Line, LineId, Obstacle, Region, RegionId, Scene};
 pub use sight::{Piece, Sight};
 pub use source::Source;
 pub use stepper::{GaitRule, SearchRule, Stepper};

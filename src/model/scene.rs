@@ -1,14 +1,19 @@
 //! The scene: what stands still.
 
 use crate::base::geometry::{Segment, Shape, Vec2};
+use std::collections::BTreeSet;
 
 /// Index of a region of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegionId(pub u32);
 
 /// Index of a barrier of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BarrierId(pub u32);
+
+/// Index of a measurement line of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LineId(pub u32);
 
 /// The fixed parts of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +24,21 @@ pub struct Scene {
     pub regions: Vec<Region>,
     /// Named points, m.
     pub points: Vec<(String, Vec2)>,
+    /// Measurement lines, which do not block agents.
+    pub lines: Vec<Line>,
+    /// The lines whose crossings a formula counts: a trial remembers only these.
+    pub counted: BTreeSet<LineId>,
+    /// The regions in which a formula measures how long somebody has been.
+    pub timed: BTreeSet<RegionId>,
+}
+
+/// A line at which agents are counted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its name.
+    pub name: String,
+    /// Its ends.
+    pub segment: Segment,
 }
 
 /// A wall or an obstacle.

@@ -1,11 +1,14 @@
 //! Geometry of the plane, in metres.
 
+mod clearing;
+pub mod convex;
 mod nearby;
 pub mod polygon;
 pub mod segment;
 pub mod shape;
 mod sweep;
 
+pub use clearing::clearing;
 pub use nearby::{Nearby, amply_around};
 pub(crate) use polygon::meeting_edges;
 pub use polygon::{HoleFault, Polygon};

@@ -45,7 +45,7 @@ const AFTER_NAME: [char; 4] = ['=', ':', '{', '['];
 /// Code of one sign of equality for another.
 const EQUALS: Code = Code::E0112;
 /// Words that start a declaration with a name.
-const DECLARES: [&str; 21] = [
+const DECLARES: [&str; 22] = [
     "agent",
     "agents",
     "behaviour",
@@ -55,6 +55,7 @@ const DECLARES: [&str; 21] = [
     "kind",
     "label",
     "let",
+    "line",
     "obstacle",
     "param",
     "point",
@@ -74,10 +75,11 @@ const NAMELESS: [&str; 13] = [
     "scene", "stop", "when",
 ];
 /// Words that start a part of a scene.
-const SCENERY: [&str; 5] = ["import", "obstacle", "point", "region", "wall"];
+const SCENERY: [&str; 6] = ["import", "line", "obstacle", "point", "region", "wall"];
 /// Words that start what has no part in a clock, and words that have.
-const TIMELESS: [&str; 11] =
-    ["const", "kind", "label", "let", "obstacle", "param", "point", "region", "tracks", "var", "wall"];
+const TIMELESS: [&str; 12] = [
+    "const", "kind", "label", "let", "line", "obstacle", "param", "point", "region", "tracks", "var", "wall",
+];
 const TIMES: [&str; 6] = ["after", "at", "horizon", "process", "step", "when"];
 
 /// Parts of sources by where they start, with the greatest end of a part up to there.

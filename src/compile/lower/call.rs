@@ -10,7 +10,7 @@ use super::builtin::DISTRIBUTIONS;
 use super::{coordinates, counted_arguments, legs};
 use crate::logic::Term;
 use crate::model::function::{Rule, Signature, Special};
-use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set, Who};
+use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -127,6 +127,9 @@ impl Elaborator<'_> {
             Signature::Special(Special::Leg(measure)) if let [agent, number] = arguments => {
                 return self.leg(built_in, measure, (expr, [agent, number]), locals);
             }
+            Signature::Special(Special::Flow) if let [line, window] = arguments => {
+                return self.flow(built_in, [line, window], locals);
+            }
             Signature::Special(Special::Robustness) => {
                 let error = Diagnostic::error(
                     Code::E0504,
@@ -157,6 +160,7 @@ impl Elaborator<'_> {
                         let [a, b] = sides.map(|(typed, span)| self.as_agent(typed, span));
                         Ok(Typed::Num(Num::OfTwo(pair, a?, b?), built_in.gives()))
                     }
+                    Signature::Special(Special::Dwell) => self.dwell(built_in, sides),
                     _ => self.distance(sides, expr.span),
                 }
             }
@@ -280,15 +284,17 @@ impl Elaborator<'_> {
                 Typed::Agents { set, particle: false }
             }
             (Special::Area, typed) => return self.area(typed, span).map(Typed::Number),
-            (Special::Density, Typed::Region(region)) => {
-                let area = self.area(Typed::Region(region), span)?;
-                let everyone = Set { members: self.everyone(), except: None };
-                let inside = Num::Count(everyone, Box::new(Bool::In(Who::Running(locals.running), region)));
-                let density =
-                    Num::Combine(Arithmetic::Divide, Box::new(inside), Box::new(Num::Constant(area.value)));
-                Typed::Num(density, built_in.gives())
+            (Special::Crossings, typed) => {
+                let line = self.counted_line(typed, span)?;
+                Typed::Num(Num::Crossings(line, None), built_in.gives())
             }
-            (Special::Density, typed) => return self.mismatch(span, "a region", &typed),
+            (
+                special @ (Special::Density
+                | Special::LevelOfService
+                | Special::MeanSpeed
+                | Special::VoronoiDensity),
+                typed,
+            ) => Typed::Num(self.of_region(special, typed, span, locals)?, built_in.gives()),
             _ => {
                 let name = built_in.name;
                 let error = Diagnostic::error(
@@ -302,7 +308,7 @@ impl Elaborator<'_> {
         })
     }
 
-    fn area(&mut self, typed: Typed, span: Span) -> Lowered<Number> {
+    pub(super) fn area(&mut self, typed: Typed, span: Span) -> Lowered<Number> {
         match typed {
             Typed::Region(region) => {
                 let shape = self.region_shape(region, span)?;

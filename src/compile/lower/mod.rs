@@ -13,6 +13,7 @@ mod quantifier;
 mod select;
 mod tally;
 mod temporal;
+mod traffic;
 
 pub(super) use builtin::{BUILT_IN, DISTRIBUTIONS, OPERATORS};
 pub(super) use logic::relation;

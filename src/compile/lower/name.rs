@@ -120,6 +120,7 @@ impl<'a> Elaborator<'a> {
             }
             Meaning::Region(id, _) => Ok(Typed::Region(id)),
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
+            Meaning::Line(id) => Ok(Typed::Line(id)),
             Meaning::Point(at) => self.constant(scope, name, span, |this| this.lower(at, &Locals::of(scope))),
             Meaning::Process(process) => {
                 let is_array = self.processes.get(process as usize).is_some_and(Declared::is_array);

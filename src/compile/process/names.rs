@@ -63,7 +63,9 @@ impl<'a> Elaborator<'a> {
     pub(in crate::compile) fn real_in(&self, num: &Num) -> Option<&'a str> {
         match num {
             Num::Variable(id) => self.processes.iter().find_map(|process| process.real(*id)),
-            Num::Apply(Function::Floor | Function::Ceil | Function::Round, _) => None,
+            Num::Apply(Function::Floor | Function::Ceil | Function::Round | Function::ServiceLevel, _) => {
+                None
+            }
             Num::Apply(_, of) | Num::Fold(_, _, of) => self.real_in(of),
             Num::Combine(_, a, b) | Num::If(_, a, b) => self.real_in(a).or_else(|| self.real_in(b)),
             _ => None,

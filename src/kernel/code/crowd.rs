@@ -238,6 +238,11 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
             Some(record) => view.read(record, body),
             None => view.splat(f64::INFINITY),
         },
+        // In steps; `lower` makes a time of them.
+        Reading::Field(Field::Dwell(region)) => match state.passages.stays(region) {
+            Some(steps) => view.read(steps, body),
+            None => view.splat(0.0),
+        },
         // It is composed of others (`lower`).
         Reading::Field(Field::Separation(_)) => view.splat(f64::NAN),
         Reading::Field(Field::Mode(behaviour)) => match state.behaviours.modes.get(behaviour.0 as usize) {

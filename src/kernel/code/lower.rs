@@ -136,6 +136,7 @@ impl<'a> Lowering<'a> {
             Num::Time => resolved(self.graph.enter(Node::Time)),
             Num::Variable(id) => resolved(self.graph.enter(Node::Variable(id.0))),
             Num::Of(Field::Separation(separation), who) => resolved(self.separation(*separation, *who)),
+            Num::Of(field @ Field::Dwell(_), who) => resolved(self.dwell(*field, *who)),
             Num::Of(field, who) => resolved(self.of(Reading::Field(*field), *who)),
             Num::Coordinate(axis, place) => {
                 let (x, y) = self.point(place);
@@ -151,6 +152,8 @@ impl<'a> Lowering<'a> {
                 Value { id, open: self.either([x.open, y.open]) }
             }
             Num::OfTwo(pair, a, b) => resolved(self.graph.enter(Node::OfTwo(*pair, *a, *b))),
+            Num::Crossings(line, window) => self.crossings(*line, *window),
+            Num::Voronoi(region) => resolved(self.graph.enter(Node::Voronoi(region.0))),
             Num::OfSet(collective, set) => self.of_set(*collective, set),
             Num::Apply(function, a) => {
                 let a = self.number(a);

@@ -20,6 +20,7 @@ mod node;
 mod proximity;
 mod schedule;
 mod span;
+mod voronoi;
 
 use super::near::Close;
 use super::state::{Layout, State};
@@ -34,6 +35,7 @@ use node::{Id, Node};
 use proximity::Proximity;
 use schedule::Schedule;
 use std::sync::Arc;
+use voronoi::Voronoi;
 
 /// Compiled expressions.
 #[derive(Clone, Debug)]
@@ -44,6 +46,8 @@ pub struct Code {
     lists: Vec<Vec<u32>>,
     regions: Vec<Ground>,
     barriers: Barriers,
+    /// Where a Voronoi density is read.
+    voronoi: Option<Arc<Voronoi>>,
     atoms: Vec<Id>,
     signals: Vec<Id>,
     unresolved: Option<Id>,
@@ -54,6 +58,14 @@ pub struct Code {
     /// Numerator and denominator of the step in seconds.
     step: (f64, f64),
     level: Level,
+}
+
+/// Numerator and denominator of the step in seconds; 1 where steps have no length.
+fn step_of(clock: Clock) -> (f64, f64) {
+    match clock {
+        Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
+        Clock::Steps | Clock::Jumps(_) => (1.0, 1.0),
+    }
 }
 
 /// What code read from a state. Reused from run to run; starts empty with `default()`.
@@ -111,15 +123,18 @@ impl Code {
                 .nodes
                 .iter()
                 .any(|node| matches!(node, Node::Nearest(..) | Node::AllFar { .. })),
+            voronoi: lowering
+                .graph
+                .nodes
+                .iter()
+                .any(|node| matches!(node, Node::Voronoi(_)))
+                .then(|| Arc::new(Voronoi::new(&scenario.scene))),
             registers: Arc::new(registers),
             lists: lowering.lists.all,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
             barriers: Barriers::new(&scenario.scene),
             schedule,
-            step: match scenario.clock {
-                Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
-                Clock::Steps | Clock::Jumps(_) => (1.0, 1.0),
-            },
+            step: step_of(scenario.clock),
             level: Level::new(),
         }
     }

@@ -90,6 +90,10 @@ pub(super) enum Node {
     ToScene(Id, Id),
     /// A number of two agents.
     OfTwo(Pair, Who, Who),
+    /// How many agents have crossed a line: all, or those of the last ticks.
+    Crossings(u32, Option<u64>),
+    /// Voronoi density of a region.
+    Voronoi(u32),
     /// Mean of a reading over a crowd.
     Mean(Reading, Crowd),
     /// Root of the mean squared distance from a point.
@@ -181,6 +185,8 @@ impl Node {
             | Self::Of(..)
             | Self::Distance(..)
             | Self::OfTwo(..)
+            | Self::Crossings(..)
+            | Self::Voronoi(_)
             | Self::Mean(..)
             | Self::Nearest(..)
             | Self::Truth(_)

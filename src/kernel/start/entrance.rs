@@ -35,6 +35,7 @@ pub(super) fn enter(
         put(field, 0.0);
     }
     state.present[slot.block] |= Mask::lane(slot.lane);
+    state.passages.begin(slot);
     driver::begin(&program.drive, state, (agent, lane), occasion, advice);
     program.behaviours.begin((&program.drive, &program.parameters), state, agent, lane);
 }

@@ -100,4 +100,6 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.no_way &= !Mask::lane(lane);
     program.processes.load(state, lane);
     program.arrivals.load(state, lane, key);
+    let blocks = state.present.len();
+    state.passages.load(&program.scenario.scene, blocks, lane);
 }

@@ -10,6 +10,7 @@ mod bodies;
 mod clocks;
 mod driving;
 mod motion;
+mod passages;
 pub(super) mod plans;
 pub(super) mod progress;
 mod queues;
@@ -21,6 +22,7 @@ pub use bodies::Bodies;
 pub use clocks::Clocks;
 pub use driving::Driving;
 pub use motion::Motion;
+pub use passages::Passages;
 pub use plans::Plans;
 pub use progress::Progress;
 pub use queues::Queues;
@@ -62,6 +64,8 @@ pub struct State {
     pub plans: Plans,
     /// How far they have come.
     pub progress: Progress,
+    /// Which lines they have crossed, and how long they have been in which region.
+    pub passages: Passages,
     /// States of their behaviours.
     pub behaviours: ActiveModes,
     /// Arrivals of the sources.
@@ -96,6 +100,7 @@ impl State {
             route: Routes::new(blocks),
             plans: Plans::default(),
             progress: Progress::new(blocks),
+            passages: Passages::default(),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),
             variables: Vec::new(),

@@ -120,6 +120,15 @@ pub enum SceneItem {
         /// Its shape.
         at: Expr,
     },
+    /// `line door: (3, 0) -- (3, 2)`
+    Line {
+        /// Its name.
+        name: Ident,
+        /// Its ends.
+        ends: [Expr; 2],
+        /// Where.
+        span: Span,
+    },
     /// `import "file.geojson" where source == "map.png"`
     Import {
         /// File.

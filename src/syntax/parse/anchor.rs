@@ -16,7 +16,7 @@ pub(super) enum Anchor {
 }
 
 /// Keywords, and what follows the name behind them.
-const NAMED: [(&str, &[&str]); 24] = [
+const NAMED: [(&str, &[&str]); 25] = [
     ("agent", &[":", "["]),
     ("agents", &[":", "["]),
     ("behaviour", &["{", "("]),
@@ -26,6 +26,7 @@ const NAMED: [(&str, &[&str]); 24] = [
     ("kind", &[":"]),
     ("label", &["="]),
     ("let", &["=", "("]),
+    ("line", &[":"]),
     ("moves", &["for", "["]),
     ("obstacle", &[":"]),
     ("on", &["{"]),
@@ -75,7 +76,7 @@ pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
             "tracks",
         ],
         Rule::property_item | Rule::bad_property_item => &["const", "let", "property", "rank"],
-        Rule::scene_item | Rule::bad_scene_item => &["obstacle", "point", "region", "wall"],
+        Rule::scene_item | Rule::bad_scene_item => &["line", "obstacle", "point", "region", "wall"],
         Rule::process_item | Rule::bad_process_item => &["label", "let", "var"],
         Rule::behaviour_item | Rule::bad_behaviour_item => &["let", "on", "state"],
         _ => &[],

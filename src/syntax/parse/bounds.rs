@@ -15,9 +15,9 @@ pub(super) const OPERATORS: [char; 6] = ['F', 'G', 'X', 'U', 'W', 'R'];
 /// Words that a name follows which may stand in a value.
 const DECLARES: [&str; 6] = ["const", "label", "let", "param", "process", "var"];
 /// Others that a name follows.
-const INTRODUCES: [&str; 11] = [
-    "agent", "agents", "group", "groups", "obstacle", "point", "property", "region", "source", "state",
-    "wall",
+const INTRODUCES: [&str; 12] = [
+    "agent", "agents", "group", "groups", "line", "obstacle", "point", "property", "region", "source",
+    "state", "wall",
 ];
 
 impl Builder<'_> {

@@ -42,6 +42,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_leave => "leave",
         Rule::kw_let => "let",
         Rule::kw_limit => "limit",
+        Rule::kw_line => "line",
         Rule::kw_log => "log",
         Rule::kw_moves => "moves",
         Rule::kw_near => "near",
@@ -173,7 +174,7 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::property_item | Rule::property_item_end => {
             &["property", "let", "const", "family", "check", "estimate", "compare", "rank"]
         }
-        Rule::scene_item | Rule::scene_item_end => &["wall", "obstacle", "region", "point", "import"],
+        Rule::scene_item | Rule::scene_item_end => &["wall", "obstacle", "region", "point", "line", "import"],
         Rule::process_item | Rule::process_item_end => &["var", "let", "label", "when", "choose"],
         Rule::behaviour_item | Rule::behaviour_item_end => &["state", "on", "let"],
         Rule::state_item | Rule::state_item_end | Rule::transition => &["after", "when"],

@@ -43,6 +43,10 @@ impl Builder<'_> {
             Rule::region => {
                 Some(SceneItem::Region { name: name?, shape: self.shape(parts.part(Rule::shape)?)? })
             }
+            Rule::line => {
+                let a = self.expr(parts.part(Rule::place)?)?;
+                Some(SceneItem::Line { name: name?, ends: [a, self.expr(parts.part(Rule::place)?)?], span })
+            }
             _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?)? }),
         }
     }

@@ -3,7 +3,8 @@
 
 use super::{Id, Lowering, Value};
 use crate::kernel::code::node::{Measure, Node, Reading};
-use crate::model::{Arithmetic, Axis, Collective, Field, Place, Separation, Set, Who};
+use crate::kernel::code::step_of;
+use crate::model::{Arithmetic, Axis, Collective, Comparison, Field, LineId, Place, Separation, Set, Who};
 
 impl Lowering<'_> {
     /// A number of a set.
@@ -17,6 +18,27 @@ impl Lowering<'_> {
                 Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
             }
         }
+    }
+
+    /// How long an agent has been in a region: a number of steps, as long as time is.
+    pub(super) fn dwell(&mut self, field: Field, who: Who) -> Id {
+        let steps = self.of(Reading::Field(field), who);
+        let (numerator, denominator) = step_of(self.scenario.clock);
+        let (numerator, denominator) = (self.graph.constant(numerator), self.graph.constant(denominator));
+        let time = self.graph.enter(Node::Combine(Arithmetic::Multiply, steps, numerator));
+        self.graph.enter(Node::Combine(Arithmetic::Divide, time, denominator))
+    }
+
+    /// How many agents have crossed a line. Those of a time window have no number before its end.
+    pub(super) fn crossings(&mut self, line: LineId, window: Option<u64>) -> Value {
+        let id = self.graph.enter(Node::Crossings(line.0, window));
+        let open = window.map(|ticks| {
+            let (numerator, denominator) = step_of(self.scenario.clock);
+            let end = self.graph.constant(ticks as f64 * numerator / denominator);
+            let now = self.graph.enter(Node::Time);
+            self.graph.enter(Node::Compare(Comparison::Less, now, end))
+        });
+        Value { id, open }
     }
 
     /// How far others are from an agent.

@@ -257,6 +257,24 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
             Node::Spread(crowd, x, y) => {
                 crowd::spread(&view, self.members(crowd), self.number(x), self.number(y))
             }
+            Node::Crossings(line, window) => {
+                let mut counts = view.splat(0.0);
+                for lane in 0..LANES {
+                    let trial = if ONE { 0 } else { lane };
+                    let last = window.map(|ticks| (state.ticks[trial], ticks));
+                    counts[lane] = state.passages.count(line, trial, last) as f64;
+                }
+                counts
+            }
+            Node::Voronoi(region) => {
+                let mut densities = view.splat(0.0);
+                if let Some(voronoi) = &self.code.voronoi {
+                    for lane in state.occupied.iter() {
+                        densities[lane] = voronoi.read(region, state, lane);
+                    }
+                }
+                if ONE { view.splat(densities[0]) } else { densities }
+            }
             Node::Nearest(who, crowd, measure) if ONE && self.eight.is_some() => {
                 if let Some(found) = self.nearest_of_block(into, who, crowd, measure) {
                     self.put(into, found);

@@ -1,0 +1,103 @@
+//! Measures of pedestrian dynamics: counts at lines; densities, speeds and times in regions.
+
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::typed::Typed;
+use crate::base::tick::Clock;
+use crate::model::function::Special;
+use crate::model::{Arithmetic, Bool, BuiltIn, Field, Fold, Function, LineId, Num, RegionId, Set, Who};
+use crate::syntax::ast::Expr;
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Elaborator<'_> {
+    /// A line, whose crossings a trial has to remember from here on.
+    pub(super) fn counted_line(&mut self, typed: Typed, span: Span) -> Lowered<LineId> {
+        match typed {
+            Typed::Line(line) => {
+                self.scene.counted.insert(line);
+                Ok(line)
+            }
+            found => self.mismatch(span, "a line", &found),
+        }
+    }
+
+    fn as_region(&mut self, typed: Typed, span: Span) -> Lowered<RegionId> {
+        match typed {
+            Typed::Region(region) => Ok(region),
+            found => self.mismatch(span, "a region", &found),
+        }
+    }
+
+    /// `flow(door, 10 s)`: who crossed in the last 10 s, over 10 s.
+    pub(super) fn flow(
+        &mut self,
+        built_in: &BuiltIn,
+        [line, window]: [&Expr; 2],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let sides = (self.lower(line, locals), self.time(window, locals));
+        let (typed, ticks) = (sides.0?, sides.1?);
+        let line = self.counted_line(typed, line.span)?;
+        let fault = match (self.clock, ticks) {
+            (Clock::Jumps(_), _) => Some((Code::E0508, "`flow` is not available in continuous time")),
+            (_, None) => Some((Code::E0503, "the time window of a flow must be finite")),
+            (_, Some(ticks)) if ticks.0 == 0 => {
+                Some((Code::E0405, "the time window of a flow must be positive"))
+            }
+            (_, Some(ticks)) if ticks > self.horizon => {
+                Some((Code::E0502, "the time window of a flow is longer than the horizon"))
+            }
+            _ => None,
+        };
+        if let Some((code, said)) = fault {
+            let error = Diagnostic::error(code, window.span, said);
+            return self.report(error.hint("write for example `flow(door, 10 s)`"));
+        }
+        let ticks = ticks.unwrap_or_default();
+        let crossings = Num::Crossings(line, Some(ticks.0));
+        Ok(Typed::Num(over(crossings, Num::Constant(self.clock.seconds(ticks))), built_in.gives()))
+    }
+
+    /// `dwell(user, hall)`: how long an agent has been in a region.
+    pub(super) fn dwell(&mut self, built_in: &BuiltIn, sides: [(Typed, Span); 2]) -> Lowered<Typed> {
+        let [(agent, left), (region, right)] = sides;
+        let sides = (self.as_agent(agent, left), self.as_region(region, right));
+        let (who, region) = (sides.0?, sides.1?);
+        self.scene.timed.insert(region);
+        Ok(Typed::Num(Num::Of(Field::Dwell(region), who), built_in.gives()))
+    }
+
+    /// A number of those in a region. Over nobody all of them have a value: a density is 0, the level of service 1 (A), and
+    /// the mean speed 0, as in PedPy.
+    pub(super) fn of_region(
+        &mut self,
+        special: Special,
+        typed: Typed,
+        span: Span,
+        locals: &Locals,
+    ) -> Lowered<Num> {
+        let region = self.as_region(typed, span)?;
+        let area = Num::Constant(self.area(Typed::Region(region), span)?.value);
+        let everyone = Set { members: self.everyone(), except: None };
+        let running = Who::Running(locals.running);
+        let inside = Box::new(Bool::In(running, region));
+        let people = Num::Count(everyone.clone(), inside.clone());
+        Ok(match special {
+            Special::VoronoiDensity => Num::Voronoi(region),
+            Special::LevelOfService => Num::Apply(Function::ServiceLevel, Box::new(over(area, people))),
+            Special::MeanSpeed => {
+                let speed = Box::new(Num::Of(Field::Speed, running));
+                let speed = Num::If(inside, speed, Box::new(Num::Constant(0.0)));
+                let least = Box::new(Num::Constant(1.0));
+                let people = Num::Combine(Arithmetic::Max, Box::new(people), least);
+                over(Num::Fold(Fold::Sum, everyone, Box::new(speed)), people)
+            }
+            _ => over(people, area),
+        })
+    }
+}
+
+fn over(a: Num, b: Num) -> Num {
+    Num::Combine(Arithmetic::Divide, Box::new(a), Box::new(b))
+}
