@@ -174,13 +174,13 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
         clock: Clock::Stepped(Decimal::parse("0.01").expect("a number")),
         horizon: Tick(100_000),
         scene: Surroundings {
-            points: Vec::new(),
             barriers: scene
                 .walls
                 .iter()
                 .map(|&wall| Barrier { name: String::new(), obstacle: Obstacle::Wall(vec![wall]) })
                 .collect(),
             regions: Vec::new(),
+            ..Surroundings::default()
         },
         agents: scene.walkers.iter().enumerate().map(agent).collect(),
         groups: Vec::new(),

@@ -135,7 +135,7 @@ impl Crowd {
             scene: Scene {
                 barriers: self.obstacles.iter().map(barrier).collect(),
                 regions: Vec::new(),
-                points: Vec::new(),
+                ..Scene::default()
             },
             agents: self.people.iter().enumerate().map(agent).collect(),
             groups: self.groups.iter().map(group).collect(),

@@ -67,13 +67,13 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         clock: Clock::Stepped(Decimal::parse("0.02").unwrap()),
         horizon: Tick(5000),
         scene: Scene {
-            points: Vec::new(),
             barriers: Vec::new(),
             regions: vec![
                 named(Shape::rectangle(p(10.0, 0.0), p(12.0, 4.0))),
                 named(Shape::Circle { centre: p(5.0, 5.0), radius: 1.0 }),
                 named(Shape::Polygon(triangle)),
             ],
+            ..Scene::default()
         },
         agents,
         groups: Vec::new(),

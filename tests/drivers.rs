@@ -64,9 +64,9 @@ fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
         clock: Clock::Stepped(Decimal::parse("0.04").unwrap()),
         horizon: Tick(5000),
         scene: Scene {
-            points: Vec::new(),
             barriers: if walls.is_empty() { Vec::new() } else { vec![barrier] },
             regions: vec![region],
+            ..Scene::default()
         },
         agents,
         groups: Vec::new(),

@@ -29,6 +29,7 @@ mod lanes;
 mod language;
 mod library;
 mod machines;
+mod measures;
 mod mistakes;
 mod mocap;
 mod mutants;

@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 25] = [
+const PAIRS: [(&str, &str); 26] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -25,6 +25,7 @@ const PAIRS: [(&str, &str); 25] = [
     pair!("detour"),
     pair!("die"),
     pair!("distracted"),
+    pair!("door"),
     pair!("epidemic"),
     pair!("exits"),
     pair!("hotel"),

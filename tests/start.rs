@@ -68,13 +68,13 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         clock: Clock::Stepped(Decimal::parse("0.02").unwrap()),
         horizon: Tick(1500),
         scene: Scene {
-            points: Vec::new(),
             barriers: vec![
                 wall(p(0.0, 0.0), p(20.0, 0.0)),
                 wall(p(0.0, 4.0), p(20.0, 4.0)),
                 Barrier { name: "pillar".into(), obstacle: pillar },
             ],
             regions: vec![Region { name: "west".into(), shape: Shape::rectangle(p(0.0, 0.0), p(1.0, 4.0)) }],
+            ..Scene::default()
         },
         agents,
         groups: Vec::new(),

@@ -246,8 +246,14 @@ fn nobody(prepared: &PreparedWorld, column: usize, state: &State, time: &str) ->
         })
     });
     let of = text.map_or(String::new(), |text| format!(" in `{text}`"));
+    if scenario.scene.counted.is_empty() {
+        return format!(
+            "a mean or a centroid{of} is over an empty set at {time}; add the condition `count(a in …) > 0 & …`"
+        );
+    }
     format!(
-        "a mean or a centroid{of} is over an empty set at {time}; add the condition `count(a in …) > 0 & …`"
+        "a flow{of} has no complete time window at {time}, or a mean or a centroid is over an empty set; begin later, for \
+         example `G[10 s, 60 s] (…)`, or add the condition `count(a in …) > 0 & …`"
     )
 }
 

@@ -2,7 +2,7 @@
 
 use super::behaviours;
 use super::number::counted;
-use crate::base::geometry::{Shape, Vec2};
+use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::base::tick::Clock;
 use crate::compile::Written;
 use crate::compile::methods::PLANNED_TRIALS;
@@ -87,7 +87,11 @@ fn processes(out: &mut String, written: &Written) {
 
 fn scene(out: &mut String, scenario: &Scenario) {
     let scene = &scenario.scene;
-    if scene.barriers.is_empty() && scene.regions.is_empty() && scene.points.is_empty() {
+    if scene.barriers.is_empty()
+        && scene.regions.is_empty()
+        && scene.points.is_empty()
+        && scene.lines.is_empty()
+    {
         return;
     }
     let _ = writeln!(out, "\nScene");
@@ -95,7 +99,7 @@ fn scene(out: &mut String, scenario: &Scenario) {
         let name = if barrier.name.is_empty() { String::new() } else { format!(" {}", barrier.name) };
         let _ = match &barrier.obstacle {
             Obstacle::Wall(segments) => {
-                let length: f64 = segments.iter().map(crate::base::geometry::Segment::length).sum();
+                let length: f64 = segments.iter().map(Segment::length).sum();
                 writeln!(
                     out,
                     "  wall{name}: {}, {} m",
@@ -111,6 +115,10 @@ fn scene(out: &mut String, scenario: &Scenario) {
     }
     for (name, at) in &scenario.scene.points {
         let _ = writeln!(out, "  point {name}: {} m", point(*at));
+    }
+    for line in &scenario.scene.lines {
+        let Segment { a, b } = line.segment;
+        let _ = writeln!(out, "  line {}: {} -- {} m", line.name, point(a), point(b));
     }
 }
 

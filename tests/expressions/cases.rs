@@ -101,6 +101,7 @@ pub(crate) fn number(depth: u32, size: u32) -> BoxedStrategy<Num> {
         Function::Floor,
         Function::Ceil,
         Function::Round,
+        Function::ServiceLevel,
     ]);
     let operators = prop::sample::select(vec![
         Arithmetic::Add,

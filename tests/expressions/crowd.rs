@@ -106,7 +106,7 @@ fn walls() -> Scene {
     Scene {
         barriers: vec![wall(p(-1.0, -1.0), p(25.0, -1.0)), wall(p(3.0, 2.0), p(3.0, 9.0))],
         regions: Vec::new(),
-        points: Vec::new(),
+        ..Scene::default()
     }
 }
 

@@ -31,7 +31,6 @@ fn scene() -> Scene {
     let region = |shape| Region { name: String::new(), shape };
     let barrier = |obstacle| Barrier { name: String::new(), obstacle };
     Scene {
-        points: Vec::new(),
         regions: vec![
             region(Shape::rectangle(p(1.0, 0.5), p(4.0, 3.0))),
             region(Shape::Circle { centre: p(3.0, 3.0), radius: 1.5 }),
@@ -47,6 +46,7 @@ fn scene() -> Scene {
             barrier(Obstacle::Solid(Shape::Polygon(ring))),
             barrier(Obstacle::Solid(Shape::rectangle(p(0.0, 2.0), p(1.0, 3.0)))),
         ],
+        ..Scene::default()
     }
 }
 

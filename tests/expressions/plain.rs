@@ -76,6 +76,10 @@ impl Plain<'_> {
                 assert_eq!(separation, Separation::Clearance);
                 self.clearance(agent)
             }
+            Field::Dwell(region) => {
+                let steps = s.passages.stays(region).map_or(0.0, |steps| self.of(steps, agent));
+                steps * 0.02
+            }
             Field::Mode(_) => -1.0,
         }
     }
@@ -208,6 +212,7 @@ impl Plain<'_> {
                 assert_eq!(*pair, Pair::TimeToCollision);
                 self.collision(self.who(*a), self.who(*b))
             }
+            Num::Crossings(..) | Num::Voronoi(_) => unreachable!("{n:?} is tested with whole trials"),
             Num::OfSet(collective, set) => {
                 assert_eq!(*collective, Collective::Spread);
                 let c = self.centroid(set)?;
@@ -232,6 +237,10 @@ impl Plain<'_> {
                     Function::Floor => a.floor(),
                     Function::Ceil => a.ceil(),
                     Function::Round => a.round(),
+                    Function::ServiceLevel => {
+                        let least = [0.46, 0.93, 1.39, 2.32, 3.24];
+                        6.0 - least.iter().filter(|&&least| a >= least).count() as f64
+                    }
                 }
             }
             Num::Combine(op, a, b) => {

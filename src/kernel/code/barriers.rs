@@ -116,7 +116,7 @@ mod tests {
             }
         };
         let barrier = |k| Barrier { name: String::new(), obstacle: obstacle(k) };
-        Scene { barriers: (0..count).map(barrier).collect(), regions: Vec::new(), points: Vec::new() }
+        Scene { barriers: (0..count).map(barrier).collect(), regions: Vec::new(), ..Scene::default() }
     }
 
     #[test]

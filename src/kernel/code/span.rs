@@ -72,13 +72,13 @@ mod tests {
         let region = |shape| Region { name: String::new(), shape };
         let barrier = |obstacle| Barrier { name: String::new(), obstacle };
         let scene = Scene {
-            points: Vec::new(),
             regions: vec![
                 region(Shape::rectangle(p(0., 0.), p(2., 2.))),
                 region(Shape::Circle { centre: p(5., 1.), radius: 1.0 }),
                 region(Shape::rectangle(p(0.5, 0.5), p(1., 1.))),
             ],
             barriers: vec![barrier(Obstacle::Wall(vec![Segment::new(p(-1., 4.), p(9., 4.))]))],
+            ..Scene::default()
         };
         let (r, b) = (|k| Place::Region(RegionId(k)), Place::Barrier(BarrierId(0)));
         assert_eq!(between(&scene, &r(0), &r(1)), 2.0);

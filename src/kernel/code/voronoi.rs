@@ -127,6 +127,7 @@ impl Voronoi {
 mod tests {
     use super::*;
     use crate::model::{Barrier, Obstacle};
+    use proptest::prelude::*;
 
     fn density(scene: &Scene, region: &Shape, people: &[(f64, f64)]) -> f64 {
         Voronoi::new(scene).density(region, people.iter().map(|&(x, y)| Vec2::new(x, y)))
@@ -160,6 +161,26 @@ mod tests {
         assert!(near(density(&Scene::default(), &region, &[(-1.0, 0.0)]), 0.0));
         assert!(near(density(&Scene::default(), &region, &[(2.0, 0.0), (2.0, 0.0)]), 2.0 / 40.0));
         assert!(near(density(&Scene::default(), &region, &[]), 0.0));
+    }
+
+    proptest! {
+        /// In a room that everybody's polygon fills, all cells together are the room.
+        #[test]
+        fn cells_fill_a_room(places in prop::collection::vec((0.01..0.79, 0.01..0.49), 1..12)) {
+            let corners = [(0.0, 0.0), (0.8, 0.0), (0.8, 0.5), (0.0, 0.5)].map(|(x, y)| Vec2::new(x, y));
+            let walls = (0..4).map(|k| Segment::new(corners[k], corners[(k + 1) % 4])).collect();
+            let barriers = vec![Barrier { name: String::new(), obstacle: Obstacle::Wall(walls) }];
+            let voronoi = Voronoi::new(&Scene { barriers, ..Scene::default() });
+            let places: Vec<Vec2> = places.into_iter().map(|(x, y)| Vec2::new(x, y)).collect();
+            let mut area = 0.0;
+            let mut cell = Convex::default();
+            for one in &places {
+                let ways = places.iter().map(|other| other - one);
+                voronoi.cell(&mut cell, &mut ways.map(|way| (way.norm_squared(), way)).collect());
+                area += clearing(&cell, &voronoi.barriers(*one)).iter().map(Convex::area).sum::<f64>();
+            }
+            prop_assert!((area - 0.4).abs() < 1e-9, "{area}");
+        }
     }
 
     #[test]

@@ -31,7 +31,7 @@ fn program() -> Program {
         scene: Scene {
             barriers: vec![wall(low, side), wall(low, top)],
             regions: Vec::new(),
-            points: Vec::new(),
+            ..Scene::default()
         },
         agents: Vec::new(),
         groups: Vec::new(),

@@ -79,6 +79,7 @@ fn numbers() -> impl Strategy<Value = Num> {
             Just(Function::Floor),
             Just(Function::Ceil),
             Just(Function::Round),
+            Just(Function::ServiceLevel),
         ];
         let operation = prop_oneof![
             Just(Arithmetic::Add),

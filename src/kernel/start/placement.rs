@@ -269,7 +269,7 @@ mod tests {
         };
         for count in [3, 40, 2_000] {
             let scene =
-                Scene { barriers: (0..count).map(wall).collect(), regions: Vec::new(), points: Vec::new() };
+                Scene { barriers: (0..count).map(wall).collect(), regions: Vec::new(), ..Scene::default() };
             let barriers = Barriers::new(&scene);
             let ground = Ground { scene: &scene, barriers: &barriers };
             let (mut looked_at, mut near_some) = (0, 0);

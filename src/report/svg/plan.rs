@@ -74,11 +74,15 @@ pub fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing
         Obstacle::Solid(shape) => Some(shape.bounds()),
     });
     let corners = shapes.chain(starts).chain(barriers).flat_map(|b| [b.low, b.high]);
-    let all = corners.chain(scene.points.iter().map(|(_, point)| *point)).chain(points);
+    let ends = scene.lines.iter().flat_map(|line| [line.segment.a, line.segment.b]);
+    let all = corners.chain(ends).chain(scene.points.iter().map(|(_, point)| *point)).chain(points);
     let bounds = Bounds::around(all).unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::new(1.0, 1.0) });
     let mut drawing = Drawing::new(bounds);
     for region in &scene.regions {
         drawing.shape(&region.shape, Ink::Region);
+    }
+    for line in &scene.lines {
+        drawing.line(&[line.segment.a, line.segment.b], Ink::Region);
     }
     for agent in &shown {
         match &agent.start.position {
@@ -115,10 +119,13 @@ pub fn draw(scenario: &Scenario) -> String {
     drawing.finish(if scenario.title.is_empty() { "plan" } else { &scenario.title })
 }
 
-/// Names of regions and points.
+/// Names of regions, lines and points.
 pub fn name_places(drawing: &mut Drawing, scenario: &Scenario) {
     for region in &scenario.scene.regions {
         drawing.text(region.shape.inner_point(), &region.name);
+    }
+    for line in &scenario.scene.lines {
+        drawing.text(0.5 * (line.segment.a + line.segment.b), &line.name);
     }
     for (name, at) in &scenario.scene.points {
         drawing.dot(*at, Ink::Region);

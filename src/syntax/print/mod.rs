@@ -78,6 +78,10 @@ mod tests {
         let import = "scene {\n  import \"a.json\" where level == 2 { snap = 5 cm }\n  region a: rect (0, 0) .. (1, 1)\n}\n";
         assert_eq!(scenario(import), import);
         assert_eq!(
+            scenario("scene{line  a:(0,1)--(2,b) // n\n}"),
+            "scene {\n  line a: (0, 1) -- (2, b)  // n\n}\n"
+        );
+        assert_eq!(
             scenario("scene{import \"a.wkt\"as  walkable{snap=5cm}}"),
             "scene { import \"a.wkt\" as walkable { snap = 5 cm } }\n"
         );
