@@ -228,6 +228,7 @@ fn scenes_and_values() {
            point door: (3, 4)\n\
            wall (0, 0) -- (1, 0) m -- door\n\
            obstacle polygon (0, 0) (9, 0) (9, 9) hole (1, 1) (2, 1) (2, 2) hole (4, 4) (5, 4) (5, 5)\n\
+           line exit: (9, 1) -- door\n\
            import \"hall.geojson\" where source == \"map.png\" & !(layer != 3)\n\
          }\n\
          agents a[3]: adult { at = near user within 2 m; route = door -> wait exponential(3 s) in 1 s .. 9 s -> exit then leave }\n\
@@ -241,7 +242,8 @@ fn scenes_and_values() {
     assert!(
         matches!(&scene[2], SceneItem::Obstacle { shape: ShapeExpr::Polygon { holes, .. }, .. } if holes.len() == 2)
     );
-    assert!(matches!(&scene[3], SceneItem::Import { filter: Some(_), .. }));
+    assert!(matches!(&scene[3], SceneItem::Line { name, .. } if name.name == "exit"));
+    assert!(matches!(&scene[4], SceneItem::Import { filter: Some(_), .. }));
     let Item::Agents(agents) = &items[1] else { panic!("{items:?}") };
     assert!(matches!(&agents.body[0].value, Value::Near { .. }));
     let Value::Route(route) = &agents.body[1].value else { panic!("{agents:?}") };

@@ -2,7 +2,6 @@
 
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::typed::Typed;
-use crate::base::tick::Clock;
 use crate::model::function::Special;
 use crate::model::{Arithmetic, Bool, BuiltIn, Field, Fold, Function, LineId, Num, RegionId, Set, Who};
 use crate::syntax::ast::Expr;
@@ -38,21 +37,23 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         let sides = (self.lower(line, locals), self.time(window, locals));
         let (typed, ticks) = (sides.0?, sides.1?);
+        let name = self.text(line.span);
         let line = self.counted_line(typed, line.span)?;
-        let fault = match (self.clock, ticks) {
-            (Clock::Jumps(_), _) => Some((Code::E0508, "`flow` is not available in continuous time")),
-            (_, None) => Some((Code::E0503, "the time window of a flow must be finite")),
-            (_, Some(ticks)) if ticks.0 == 0 => {
-                Some((Code::E0405, "the time window of a flow must be positive"))
+        let fault = match ticks {
+            None => Some((Code::E0503, "the time window of a flow must be finite".to_owned())),
+            Some(ticks) if ticks.0 == 0 => {
+                Some((Code::E0405, "the time window of a flow must be positive".to_owned()))
             }
-            (_, Some(ticks)) if ticks > self.horizon => {
-                Some((Code::E0502, "the time window of a flow is longer than the horizon"))
+            Some(ticks) if ticks > self.horizon => {
+                let [asked, most] = [ticks, self.horizon].map(|ticks| self.clock.seconds(ticks));
+                let said = format!("a time window of {asked} s is longer than the horizon of {most} s");
+                Some((Code::E0502, said))
             }
-            _ => None,
+            Some(_) => None,
         };
         if let Some((code, said)) = fault {
             let error = Diagnostic::error(code, window.span, said);
-            return self.report(error.hint("write for example `flow(door, 10 s)`"));
+            return self.report(error.hint(format!("write for example `flow({name}, 10 s)`")));
         }
         let ticks = ticks.unwrap_or_default();
         let crossings = Num::Crossings(line, Some(ticks.0));
