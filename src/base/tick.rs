@@ -28,6 +28,14 @@ impl Clock {
         }
     }
 
+    /// Numerator and denominator of the length of a step in seconds; 1 where steps have none.
+    pub fn step_ratio(self) -> (f64, f64) {
+        match self {
+            Self::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
+            Self::Steps | Self::Jumps(_) => (1.0, 1.0),
+        }
+    }
+
     /// Whether it is continuous time.
     pub const fn is_jumps(self) -> bool {
         matches!(self, Self::Jumps(_))

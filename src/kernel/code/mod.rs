@@ -25,7 +25,6 @@ mod voronoi;
 use super::near::Close;
 use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
-use crate::base::tick::Clock;
 use crate::model::{Bool, Num, Scenario};
 use barriers::Barriers;
 use fearless_simd::{Level, dispatch};
@@ -58,14 +57,6 @@ pub struct Code {
     /// Numerator and denominator of the step in seconds.
     step: (f64, f64),
     level: Level,
-}
-
-/// Numerator and denominator of the step in seconds; 1 where steps have no length.
-fn step_of(clock: Clock) -> (f64, f64) {
-    match clock {
-        Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
-        Clock::Steps | Clock::Jumps(_) => (1.0, 1.0),
-    }
 }
 
 /// What code read from a state. Reused from run to run; starts empty with `default()`.
@@ -134,7 +125,7 @@ impl Code {
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
             barriers: Barriers::new(&scenario.scene),
             schedule,
-            step: step_of(scenario.clock),
+            step: scenario.clock.step_ratio(),
             level: Level::new(),
         }
     }

@@ -100,6 +100,6 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.no_way &= !Mask::lane(lane);
     program.processes.load(state, lane);
     program.arrivals.load(state, lane, key);
-    let blocks = state.present.len();
-    state.passages.load(&program.scenario.scene, blocks, lane);
+    let slots = state.layout.slots_of(Mask::lane(lane));
+    state.passages.load(&program.scenario.scene, state.present.len(), (lane, slots));
 }

@@ -24,8 +24,8 @@ struct Crossings {
 }
 
 impl Passages {
-    /// A trial begins in a lane of a batch of so many blocks.
-    pub(in crate::kernel) fn load(&mut self, scene: &Scene, blocks: usize, lane: usize) {
+    /// A trial begins in a lane of a batch of so many blocks, and has these slots of each.
+    pub(in crate::kernel) fn load(&mut self, scene: &Scene, blocks: usize, (lane, slots): (usize, Mask)) {
         if scene.counted.is_empty() && scene.timed.is_empty() {
             return;
         }
@@ -34,10 +34,15 @@ impl Passages {
         for id in &scene.counted {
             let crossings = &mut self.crossings[id.0 as usize];
             crossings.who.resize(blocks, Mask::NONE);
+            crossings.who.iter_mut().for_each(|who| *who &= !slots);
             crossings.when[lane].clear();
         }
         for id in &scene.timed {
-            self.stays[id.0 as usize].resize(blocks, Lanes::ZERO);
+            let stays = &mut self.stays[id.0 as usize];
+            stays.resize(blocks, Lanes::ZERO);
+            for stays in stays {
+                slots.iter().for_each(|lane| stays.0[lane] = 0.0);
+            }
         }
     }
 

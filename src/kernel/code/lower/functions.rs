@@ -2,8 +2,8 @@
 //! off the state in one go are in `code/crowd.rs`.
 
 use super::{Id, Lowering, Value};
+use crate::base::tick::Tick;
 use crate::kernel::code::node::{Measure, Node, Reading};
-use crate::kernel::code::step_of;
 use crate::model::{Arithmetic, Axis, Collective, Comparison, Field, LineId, Place, Separation, Set, Who};
 
 impl Lowering<'_> {
@@ -23,7 +23,7 @@ impl Lowering<'_> {
     /// How long an agent has been in a region: a number of steps, as long as time is.
     pub(super) fn dwell(&mut self, field: Field, who: Who) -> Id {
         let steps = self.of(Reading::Field(field), who);
-        let (numerator, denominator) = step_of(self.scenario.clock);
+        let (numerator, denominator) = self.scenario.clock.step_ratio();
         let (numerator, denominator) = (self.graph.constant(numerator), self.graph.constant(denominator));
         let time = self.graph.enter(Node::Combine(Arithmetic::Multiply, steps, numerator));
         self.graph.enter(Node::Combine(Arithmetic::Divide, time, denominator))
@@ -33,8 +33,7 @@ impl Lowering<'_> {
     pub(super) fn crossings(&mut self, line: LineId, window: Option<u64>) -> Value {
         let id = self.graph.enter(Node::Crossings(line.0, window));
         let open = window.map(|ticks| {
-            let (numerator, denominator) = step_of(self.scenario.clock);
-            let end = self.graph.constant(ticks as f64 * numerator / denominator);
+            let end = self.graph.constant(self.scenario.clock.seconds(Tick(ticks)));
             let now = self.graph.enter(Node::Time);
             self.graph.enter(Node::Compare(Comparison::Less, now, end))
         });
