@@ -239,7 +239,7 @@ impl Plain<'_> {
                     Function::Round => a.round(),
                     Function::ServiceLevel => {
                         let least = [0.46, 0.93, 1.39, 2.32, 3.24];
-                        6.0 - least.iter().filter(|&&least| a >= least).count() as f64
+                        1.0 + least.iter().filter(|&&least| a < least).count() as f64
                     }
                 }
             }
