@@ -1,6 +1,6 @@
 //! Watches who crosses lines and who is in regions, from one state to the next.
 //!
-//! A line is crossed as in PedPy (`compute_n_t`): the way of a step meets it and does not end on it; a step that begins on
+//! A line is crossed as in `PedPy` (`compute_n_t`): the way of a step meets it and does not end on it; a step that begins on
 //! the line and leaves it crosses it. What is nearer to a line than 10 µm is on it, here at both ends of a step.
 
 use super::code::ground::Ground;
@@ -37,38 +37,10 @@ impl Passing {
     /// After a step of the slots `moved`, which began it at `x` and `y`.
     pub(super) fn step(&self, level: Level, state: &mut State, (x, y): (&[Lanes], &[Lanes]), moved: &[Mask]) {
         for (line, segment) in &self.lines {
-            self.cross(state, (*line, segment), (x, y), moved);
+            cross_line(state, (*line, segment), (x, y), moved);
         }
         if !self.regions.is_empty() {
             dispatch!(level, simd => self.stay(simd, &mut state.passages, (x, y), moved));
-        }
-    }
-
-    fn cross(
-        &self,
-        state: &mut State,
-        (line, segment): (LineId, &Segment),
-        (x, y): (&[Lanes], &[Lanes]),
-        moved: &[Mask],
-    ) {
-        let along = segment.b - segment.a;
-        let margin = 2.0 * ON_LINE * along.norm();
-        for (block, &moved) in moved.iter().enumerate() {
-            for lane in (moved & state.passages.not_across(line, block)).iter() {
-                let from = Vec2::new(x[block].0[lane], y[block].0[lane]);
-                let motion = &state.motion;
-                let to = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
-                // Most stay on one side.
-                let (side, end) = (cross(along, from - segment.a), cross(along, to - segment.a));
-                if side.min(end) > margin || side.max(end) < -margin {
-                    continue;
-                }
-                if is_crossed(segment, from, to) {
-                    let trial = state.layout.trial_of(lane);
-                    let now = (trial, state.ticks[trial]);
-                    state.passages.cross(line, Slot { block, lane }, now);
-                }
-            }
         }
     }
 
@@ -79,6 +51,34 @@ impl Passing {
                 let at = |field: &[Lanes]| Vector::from_slice(simd, &field[block].0[..LANES]);
                 let inside = narrow(ground.contains(at(x), at(y)));
                 passages.stay(*region, block, moved[block] & inside);
+            }
+        }
+    }
+}
+
+/// Notes who crosses a line in a step.
+fn cross_line(
+    state: &mut State,
+    (line, segment): (LineId, &Segment),
+    (x, y): (&[Lanes], &[Lanes]),
+    moved: &[Mask],
+) {
+    let along = segment.b - segment.a;
+    let margin = 2.0 * ON_LINE * along.norm();
+    for (block, &moved) in moved.iter().enumerate() {
+        for lane in (moved & state.passages.not_across(line, block)).iter() {
+            let from = Vec2::new(x[block].0[lane], y[block].0[lane]);
+            let motion = &state.motion;
+            let to = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
+            // Most stay on one side.
+            let (side, end) = (cross(along, from - segment.a), cross(along, to - segment.a));
+            if side.min(end) > margin || side.max(end) < -margin {
+                continue;
+            }
+            if is_crossed(segment, from, to) {
+                let trial = state.layout.trial_of(lane);
+                let now = (trial, state.ticks[trial]);
+                state.passages.cross(line, Slot { block, lane }, now);
             }
         }
     }

@@ -10,17 +10,17 @@ const NOTHING: f64 = 1e-9;
 pub fn clearing(whole: &Convex, segments: &[Segment]) -> Vec<Convex> {
     let mut parts = vec![whole.clone()];
     for (name, segment) in segments.iter().enumerate() {
-        for k in 0..parts.len() {
-            if !runs_through(segment, &parts[k]) {
-                continue;
-            }
-            let along = segment.b - segment.a;
-            let normal = Vec2::new(along.y, -along.x);
-            let mut other = parts[k].clone();
-            parts[k].cut(normal, normal.dot(&segment.a), name as u32);
-            other.cut(-normal, -normal.dot(&segment.a), name as u32);
-            parts.push(other);
+        let along = segment.b - segment.a;
+        let normal = Vec2::new(along.y, -along.x);
+        let limit = normal.dot(&segment.a);
+        let mut beyond = Vec::new();
+        for part in parts.iter_mut().filter(|part| runs_through(segment, part)) {
+            let mut other = part.clone();
+            part.cut(normal, limit, name as u32);
+            other.cut(-normal, -limit, name as u32);
+            beyond.push(other);
         }
+        parts.extend(beyond);
     }
     // Those reached so far come first; of these `done` have been looked at.
     let first = (0..parts.len())
@@ -95,15 +95,15 @@ fn is_open((mut from, to): (f64, f64), walls: &[(f64, f64)]) -> bool {
 mod tests {
     use super::*;
 
+    type Wall = ((f64, f64), (f64, f64));
+
     /// The area of what is reached from the middle of a square of side 2.
-    fn reached(walls: &[((f64, f64), (f64, f64))]) -> f64 {
+    fn reached(walls: &[Wall]) -> f64 {
         let mut square = Convex::regular(4, 9.0);
         for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
             square.cut(Vec2::new(x, y), 1.0, UNNAMED);
         }
-        let segment = |&((ax, ay), (bx, by)): &((f64, f64), (f64, f64))| {
-            Segment::new(Vec2::new(ax, ay), Vec2::new(bx, by))
-        };
+        let segment = |&((ax, ay), (bx, by)): &Wall| Segment::new(Vec2::new(ax, ay), Vec2::new(bx, by));
         let walls: Vec<Segment> = walls.iter().map(segment).collect();
         clearing(&square, &walls).iter().map(Convex::area).sum()
     }

@@ -70,7 +70,7 @@ impl Elaborator<'_> {
     }
 
     /// A number of those in a region. Over nobody all of them have a value: a density is 0, the level of service 1 (A), and
-    /// the mean speed 0, as in PedPy.
+    /// the mean speed 0, as in `PedPy`.
     pub(super) fn of_region(
         &mut self,
         special: Special,

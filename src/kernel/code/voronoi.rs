@@ -1,4 +1,4 @@
-//! Voronoi density (Steffen and Seyfried 2010), as in PedPy: everyone has the part of the plane that is nearer to them than to
+//! Voronoi density (Steffen and Seyfried 2010), as in `PedPy`: everyone has the part of the plane that is nearer to them than to
 //! anybody else, at most up to 1 m away (a polygon of 12 sides), cut where a barrier separates it from them. A person adds
 //! the share of this cell that lies in the region; the sum is divided by the area of the region.
 
