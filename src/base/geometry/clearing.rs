@@ -28,7 +28,8 @@ pub fn clearing(whole: &Convex, segments: &[Segment]) -> Vec<Convex> {
     parts.swap(0, first.unwrap_or(0));
     let (mut reached, mut done) = (1, 0);
     while done < reached {
-        for k in reached..parts.len() {
+        let unknown = reached..parts.len();
+        for k in unknown {
             if are_joined(&parts[done], &parts[k], segments) {
                 parts.swap(reached, k);
                 reached += 1;
