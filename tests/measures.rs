@@ -1,5 +1,5 @@
 //! Measures of pedestrian dynamics: closed forms, a plain evaluation of the positions of whole trials in both layouts, and
-//! PedPy where it is installed.
+//! `PedPy` where it is installed.
 
 use crate::program::at_root;
 use crate::texts::compiled;
@@ -228,7 +228,7 @@ fn a_trial_that_is_shown_state_by_state_counts_as_it_did() {
     }
 }
 
-/// The Python that has PedPy, if any: `SMC_PEDPY_PYTHON`, or `python3`.
+/// The Python that has `PedPy`, if any: `SMC_PEDPY_PYTHON`, or `python3`.
 fn python_with_pedpy() -> Option<String> {
     let python = std::env::var("SMC_PEDPY_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let mut asked = Command::new(&python);
