@@ -467,19 +467,15 @@ impl<'a> Compiler<'a> {
         let (mut title, mut tracks) = (String::new(), Vec::new());
         let sources: Arc<[Source]> = self.input.sources.into();
         for (site, settings) in self.sites.into_iter().zip(described) {
-            let Some(mut scenario) = site.scenario else { return (None, diagnostics) };
+            let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
             let mut elaborator = site.elaborator;
-            // Formulas of properties are lowered after the scenario was built.
-            if scenario.scene != elaborator.scene {
-                Arc::make_mut(&mut scenario).scene = elaborator.scene.clone();
-            }
             tracks = std::mem::take(&mut elaborator.velocities);
             let written = elaborator.written(self.input.scenario);
             let kinds = elaborator.bodies();
             worlds.push(World {
                 settings,
-                scenario,
+                scenario: elaborator.counting(scenario),
                 kinds,
                 atoms: elaborator.atoms,
                 written,

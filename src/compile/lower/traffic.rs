@@ -3,13 +3,24 @@
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::typed::Typed;
 use crate::model::function::Special;
-use crate::model::{Arithmetic, Bool, BuiltIn, Field, Fold, Function, LineId, Num, RegionId, Set, Who};
+use crate::model::{
+    Arithmetic, Bool, BuiltIn, Field, Fold, Function, LineId, Num, RegionId, Scenario, Set, Who,
+};
 use crate::syntax::ast::Expr;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::sync::Arc;
 
 impl Elaborator<'_> {
+    /// A scenario with all that formulas count: those of properties are lowered after it was built.
+    pub(in crate::compile) fn counting(&self, mut scenario: Arc<Scenario>) -> Arc<Scenario> {
+        if scenario.scene != self.scene {
+            Arc::make_mut(&mut scenario).scene = self.scene.clone();
+        }
+        scenario
+    }
+
     /// A line, whose crossings a trial has to remember from here on.
     pub(super) fn counted_line(&mut self, typed: Typed, span: Span) -> Lowered<LineId> {
         match typed {
