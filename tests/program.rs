@@ -113,3 +113,11 @@ pub(crate) fn timeless(value: &mut Value) {
         _ => {}
     }
 }
+
+/// The value of a setting in JSON as it is written: `90 deg`.
+pub(crate) fn written(setting: &serde_json::Value) -> String {
+    match setting["unit"].as_str().unwrap() {
+        "" => setting["value"].to_string(),
+        unit => format!("{} {unit}", setting["value"]),
+    }
+}

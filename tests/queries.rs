@@ -1,7 +1,7 @@
 //! What queries ask for, seen from outside: strict checks of quantiles, combinations of sweeps, errors of families,
 //! widths with units, ranges of procedures, rankings with small budgets.
 
-use crate::program::{Place, SMALL, Said};
+use crate::program::{Place, SMALL, Said, written};
 use serde_json::Value;
 
 /// `c.x` ends as 1 with probability `p`, else as 2.
@@ -90,7 +90,7 @@ fn sweeps_in_units_that_are_no_decimals_stay_in_their_range() {
         process c { var x: 0 .. 2 = 0  when x == 0 & a >= 0 deg -> x = 1 }\n";
     let points = |sweep: &str| -> Vec<String> {
         let found = results(scenario, "estimate P(F (c.x == 1)) by fixed(trials = 1)\n", &["--set", sweep]);
-        found.iter().map(|r| r["settings"]["a"].as_str().unwrap().to_owned()).collect()
+        found.iter().map(|r| written(&r["settings"]["a"])).collect()
     };
     for (sweep, count, last) in [
         ("a=0 deg..90 deg by 3 deg", 31, "90 deg"),

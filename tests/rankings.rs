@@ -2,7 +2,7 @@
 //! `docs/semantics.md` has its test.
 
 use crate::cli::formats::validated;
-use crate::program::{Place, timeless};
+use crate::program::{Place, timeless, written};
 use serde_json::Value;
 
 /// `c.x` ends as 1 with probability `p`, `d.x` with probability `q`.
@@ -73,7 +73,7 @@ fn values_are_the_worlds_that_under_sets() {
         assert_eq!(result["choice"], if by_mean { "p = 0.2" } else { "p = 0.8" }, "{result:#}");
         assert!(result["tied"] == false && result["certifies"] != "");
         for option in result["options"].as_array().unwrap() {
-            assert_eq!(option["option"], format!("p = {}", option["settings"]["p"].as_str().unwrap()));
+            assert_eq!(option["option"], format!("p = {}", written(&option["settings"]["p"])));
             if by_mean {
                 continue;
             }
@@ -98,7 +98,7 @@ fn several_parameters_are_ranked_in_all_combinations() {
     let all = ["0.2", "0.8"].map(|p| ["10", "50", "90"].map(|q| format!("p = {p}, q = {q} %")));
     assert_eq!(found, all.concat());
     let settings = &result["options"][0]["settings"];
-    assert_eq!((&settings["p"], &settings["q"]), (&"0.8".into(), &"90 %".into()));
+    assert_eq!([written(&settings["p"]), written(&settings["q"])], ["0.8", "90 %"]);
 }
 
 #[test]
@@ -112,14 +112,14 @@ fn decades_have_as_many_values_as_they_say() {
     // The last one is there where it is meant.
     let swept =
         results(COINS, "estimate P(F (c.x == 1))\n", &["--set", "p=0.01..1 by log 1", "--max-trials", "1"]);
-    let values: Vec<&str> = swept.iter().map(|r| r["settings"]["p"].as_str().unwrap()).collect();
+    let values: Vec<String> = swept.iter().map(|r| written(&r["settings"]["p"])).collect();
     assert_eq!(values, ["0.01", "0.1", "1"]);
     let listed = results(
         COINS,
         "estimate P(F (c.x == 1))\n",
         &["--set", "p=0.1,0.7", "--set", "q=max(0.1, 0.2)", "--max-trials", "1"],
     );
-    let values: Vec<&str> = listed.iter().map(|r| r["settings"]["p"].as_str().unwrap()).collect();
+    let values: Vec<String> = listed.iter().map(|r| written(&r["settings"]["p"])).collect();
     assert_eq!(values, ["0.1", "0.7"]);
 }
 

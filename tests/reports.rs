@@ -300,6 +300,31 @@ fn json_object() {
 }
 
 #[test]
+fn csv_table() {
+    insta::assert_snapshot!(render(&run(), Format::Csv, Palette::PLAIN));
+}
+
+#[test]
+fn one_line_a_query() {
+    insta::assert_snapshot!(render(&run(), Format::Brief, Palette::PLAIN));
+}
+
+#[test]
+fn long_times_are_read_in_minutes_and_hours() {
+    let waiting = |seconds: f64| {
+        let mut result = result(asked(0, Kind::Estimate, "estimate E(time_until(done(a)))"));
+        (result.estimate, result.low, result.high) = (Some(seconds), 0.9 * seconds, 1.1 * seconds);
+        result.unit = "s".to_owned();
+        let run = CallResult { results: vec![result], ..CallResult::default() };
+        assert!(render(&run, Format::Json, Palette::PLAIN).contains(&format!("\"estimate\": {seconds}")));
+        render(&run, Format::Brief, Palette::PLAIN)
+    };
+    assert!(waiting(100.0).contains("100 s  [90, 110] s"), "{}", waiting(100.0));
+    assert!(waiting(600.0).contains("10.0 min  [9.0, 11.0] min"), "{}", waiting(600.0));
+    assert!(waiting(36000.0).contains("10.0 h  [9.0, 11.0] h"), "{}", waiting(36000.0));
+}
+
+#[test]
 fn json_has_the_promised_fields_in_order() {
     let promised = [
         "index",

@@ -3,6 +3,7 @@
 use super::advise::AdviseCommand;
 use super::gait::GaitCommand;
 use super::infer::InferCommand;
+use super::outputs::Destination;
 use super::path::PathCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
 use super::values::{
@@ -116,9 +117,13 @@ pub(super) struct Check {
     /// exceed it by 25 %, at least 20 ms and at most a second.
     #[arg(long, value_parser = parse_duration)]
     pub(super) timeout: Option<std::time::Duration>,
-    /// Format of the results on standard output.
-    #[arg(long, value_enum, default_value_t = OutputFormat::Text)]
-    pub(super) format: OutputFormat,
+    /// Format of the results on standard output: `text` (unless set), `brief`, `json`, `csv`, `junit` or `github`. With a file,
+    /// as in `--format csv=results.csv`, they are also written there. May be given several times.
+    #[arg(long, value_name = "FORMAT[=FILE]")]
+    pub(super) format: Vec<Destination>,
+    /// Print one line a query, as `--format brief` does.
+    #[arg(long)]
+    pub(super) brief: bool,
     /// Also write a self-contained HTML page with charts.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
@@ -139,6 +144,10 @@ pub(super) struct Check {
 pub(super) enum OutputFormat {
     /// For people.
     Text,
+    /// One line a query.
+    Brief,
+    /// A table: one row a result, an option of a ranking, a side of a comparison.
+    Csv,
     /// One object; see docs/schema/verdict.schema.json.
     Json,
     /// For continuous integration: `JUnit` XML.

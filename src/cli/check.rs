@@ -1,8 +1,9 @@
 //! `smc check`: decide, estimate, compare, rank.
 
-use super::arguments::{Check, OutputFormat};
+use super::arguments::Check;
 use super::deadline::{Deadline, Ended, Phase};
 use super::file_cache::{FileCache, pack};
+use super::outputs::Outputs;
 use super::progress::Progress;
 use super::ranks::ProcessPool;
 use super::terminal::{Colors, print, say};
@@ -23,7 +24,6 @@ use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Runs the command.
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         deadline.enter(Phase::Printing);
     }
     complaint::diagnose(&inputs, colors);
-    let overwritten = output::guard(arguments.report.as_deref(), &paths).err();
+    let outputs = Outputs::new(&arguments.format, arguments.brief, arguments.report.as_deref(), &paths);
     let mut study = inputs.study.take();
     let mut reporter = Reporter {
         arguments,
@@ -49,10 +49,11 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         findings: inputs::findings(&inputs.diagnostics, &inputs.sources),
         errors: inputs.errors,
         prints: inputs.prints.clone(),
-        page: arguments.report.as_deref().filter(|_| overwritten.is_none()),
+        outputs: Outputs { screen: screen(arguments), files: Vec::new() },
     };
-    if let Some(error) = overwritten {
-        return reporter.refuse(error);
+    match outputs {
+        Ok(outputs) => reporter.outputs = outputs,
+        Err(error) => return reporter.refuse(error),
     }
     let Some(study) = &mut study else { return reporter.refused() };
     let only = match library::chosen(study, &arguments.only) {
@@ -154,18 +155,18 @@ struct Reporter<'a> {
     /// How many errors there are.
     errors: usize,
     prints: Vec<(String, Fingerprint)>,
-    /// The page that is written beside.
-    page: Option<&'a Path>,
+    /// Where the results go.
+    outputs: Outputs,
 }
 
 impl Reporter<'_> {
     /// Prints a forecast.
     fn tell(self, total: &CallForecast) -> Exit {
         self.deadline.enter(Phase::Printing);
-        let text = match self.arguments.format {
-            OutputFormat::Json => report::forecast::json(total),
-            OutputFormat::Text => visible(&report::forecast::text(total)).into_owned(),
-            OutputFormat::Junit | OutputFormat::Github => {
+        let text = match self.outputs.screen {
+            Format::Json => report::forecast::json(total),
+            Format::Text => visible(&report::forecast::text(total)).into_owned(),
+            _ => {
                 return self.refuse(complaint::argument(
                     "`--forecast` supports only `--format text` and `--format json`",
                     "write `--format text` or `--format json`",
@@ -229,12 +230,12 @@ impl Reporter<'_> {
             replay: format!("{} --seed {}", line(self.arguments).check(), self.arguments.seed),
             ..CallResult::default()
         };
-        if self.arguments.format != OutputFormat::Text
-            && let Err(reason) = print(&report::render(&run, format(self.arguments.format), Palette::PLAIN))
+        if self.outputs.screen.is_for_programs()
+            && let Err(reason) = print(&report::render(&run, self.outputs.screen, Palette::PLAIN))
         {
             complaint::tell(&complaint::output(reason), &[], self.colors);
         }
-        page(self.page, &run, self.colors);
+        files(&self.outputs, &run, self.colors);
         Exit::Wrong
     }
 
@@ -249,14 +250,14 @@ impl Reporter<'_> {
         let run = CallResult { inputs: self.prints, diagnostics: self.findings, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
-        if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {
+        if let Err(reason) = print(&report::render(&run, self.outputs.screen, palette)) {
             complaint::tell(&complaint::output(reason), &[], self.colors);
             exit = exit.worse(Exit::Wrong);
         }
         if let Some(error) = &broken {
             complaint::tell(error, self.sources, self.colors);
         }
-        exit.worse(page(self.page, &run, self.colors))
+        exit.worse(files(&self.outputs, &run, self.colors))
     }
 }
 
@@ -269,7 +270,7 @@ fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + 
         replay: format!("{} --seed {}", line(arguments).check(), arguments.seed),
         ..CallResult::default()
     };
-    let chosen = arguments.format;
+    let chosen = screen(arguments);
     move |ended| {
         let mut run = run.clone();
         let error = match ended {
@@ -292,7 +293,7 @@ fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + 
 }
 
 /// A report of a call whose command line cannot be understood, in formats for machines.
-pub(super) fn misused(chosen: OutputFormat, message: &str) {
+pub(super) fn misused(chosen: Format, message: &str) {
     let error = Diagnostic::placeless(Code::E0705, message);
     let run = CallResult {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -304,7 +305,7 @@ pub(super) fn misused(chosen: OutputFormat, message: &str) {
 }
 
 /// A report of a call that ended without results, in formats for machines.
-pub(super) fn without_results(chosen: OutputFormat, scenario: String, seed: u64, failure: Failure) {
+pub(super) fn without_results(chosen: Format, scenario: String, seed: u64, failure: Failure) {
     let version = env!("CARGO_PKG_VERSION").to_owned();
     for_machines(
         chosen,
@@ -312,29 +313,30 @@ pub(super) fn without_results(chosen: OutputFormat, scenario: String, seed: u64,
     );
 }
 
-fn for_machines(chosen: OutputFormat, run: &CallResult) {
-    if chosen != OutputFormat::Text {
-        let _ = print(&report::render(run, format(chosen), Palette::PLAIN));
+fn for_machines(chosen: Format, run: &CallResult) {
+    if chosen.is_for_programs() {
+        let _ = print(&report::render(run, chosen, Palette::PLAIN));
     }
 }
 
-const fn format(chosen: OutputFormat) -> Format {
-    match chosen {
-        OutputFormat::Text => Format::Text,
-        OutputFormat::Json => Format::Json,
-        OutputFormat::Junit => Format::Junit,
-        OutputFormat::Github => Format::Github,
-    }
+/// The format that a call prints.
+pub(super) fn screen(arguments: &Check) -> Format {
+    let printed = arguments.format.iter().find(|destination| destination.file.is_none());
+    printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format.of())
 }
 
-/// Writes the page that was asked for, if one was.
-fn page(path: Option<&Path>, run: &CallResult, colors: Colors) -> Exit {
-    let Some(path) = path else { return Exit::Success };
-    let text = report::render(run, Format::Html, Palette::PLAIN);
-    let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) else { return Exit::Success };
-    let error = format!("`{}` cannot be written: {error}", path.display());
-    complaint::tell(&complaint::output(error), &[], colors);
-    Exit::Wrong
+/// Writes the files that were asked for.
+fn files(outputs: &Outputs, run: &CallResult, colors: Colors) -> Exit {
+    let mut exit = Exit::Success;
+    for (format, path) in &outputs.files {
+        let text = report::render(run, *format, Palette::PLAIN);
+        if let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) {
+            let error = format!("`{}` cannot be written: {error}", path.display());
+            complaint::tell(&complaint::output(error), &[], colors);
+            exit = Exit::Wrong;
+        }
+    }
+    exit
 }
 
 /// File and line of a place.

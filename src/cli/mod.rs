@@ -15,6 +15,7 @@ mod infer;
 mod inputs;
 mod manual;
 mod output;
+mod outputs;
 mod path;
 mod progress;
 mod ranks;
@@ -28,8 +29,9 @@ mod walk;
 use crate::base::visible::visible;
 use crate::engine::outcome::Failure;
 use crate::report::ExitCode as Exit;
-use arguments::{Arguments, Command, OutputFormat};
-use clap::{Parser, ValueEnum};
+use arguments::{Arguments, Command};
+use clap::Parser;
+use outputs::Destination;
 use std::borrow::Cow;
 use std::process;
 use terminal::{Colors, say};
@@ -59,7 +61,7 @@ pub fn run() -> process::ExitCode {
         _ => {}
     }
     let asked = if let Command::Check(check) = &arguments.command {
-        Some((check.format, check.model.scenario.clone(), check.seed))
+        Some((check::screen(check), check.model.scenario.clone(), check.seed))
     } else {
         None
     };
@@ -101,19 +103,19 @@ fn misused(error: &clap::Error) {
     let message = &message.split_whitespace().collect::<Vec<_>>().join(" ");
     let format = format_of(&words);
     if words.iter().any(|word| word == "check")
-        && let Some(format) = format.and_then(|name| OutputFormat::from_str(name, false).ok())
+        && let Some(destination) = format.and_then(|text| text.parse::<Destination>().ok())
     {
-        check::misused(format, message);
+        check::misused(destination.format.of(), message);
     } else if words.iter().any(|word| word == "drift") && format == Some("json") {
         let _ = drift::print_error(message);
     }
 }
 
-/// The last format that words ask for.
+/// The last format for standard output that words ask for.
 fn format_of(words: &[String]) -> Option<&str> {
     let inline = words.iter().filter_map(|word| word.strip_prefix("--format="));
     let apart = words.windows(2).filter(|pair| pair[0] == "--format").map(|pair| pair[1].as_str());
-    inline.chain(apart).last()
+    inline.chain(apart).filter(|format| !format.contains('=')).last()
 }
 
 /// Runs the program as a rank of another one, which hears of it if that fails.

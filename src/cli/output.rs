@@ -93,7 +93,7 @@ pub(super) fn guard(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), Dia
 }
 
 /// Whether two names stand for one file.
-fn is_same(one: &Path, other: &Path) -> bool {
+pub(super) fn is_same(one: &Path, other: &Path) -> bool {
     let (Ok(of_one), Ok(of_other)) = (std::fs::metadata(one), std::fs::metadata(other)) else { return false };
     of_one.is_file() && of_other.is_file() && is_same_file((one, &of_one), (other, &of_other))
 }

@@ -1,6 +1,7 @@
 //! Forecasts of a call, as text and as JSON.
 
 use super::number::{count, counted};
+use super::setting;
 use crate::engine::{CallForecast, Forecast};
 use serde_json::{Value, json};
 
@@ -35,11 +36,9 @@ pub fn text(total: &CallForecast) -> String {
 /// One object, ending with a line end.
 pub fn json(total: &CallForecast) -> String {
     let query = |forecast: &Forecast| {
-        let settings: serde_json::Map<String, Value> =
-            forecast.settings.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
         json!({
             "query": forecast.query,
-            "settings": settings,
+            "settings": setting::object(&forecast.settings),
             "trials": rough(forecast.trials.likely),
             "least": least(forecast.trials.least),
             "most": rough(forecast.trials.most),
@@ -47,7 +46,7 @@ pub fn json(total: &CallForecast) -> String {
         })
     };
     let queries: Vec<Value> = total.queries.iter().map(query).collect();
-    format!("{:#}\n", json!({ "schema": 1, "forecast": queries, "seconds": total.seconds }))
+    format!("{:#}\n", json!({ "schema": 2, "forecast": queries, "seconds": total.seconds }))
 }
 
 /// Two digits are enough for a forecast: the last place that counts.

@@ -4,6 +4,7 @@
 //! lies beyond the horizon, in whole or by an end of its interval, says so by `"censored": true`. Everything
 //! but `elapsed_s` is a function of input, seed and version.
 
+use super::setting;
 use crate::base::random;
 use crate::engine::outcome::{
     CallResult, Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare,
@@ -25,7 +26,7 @@ pub fn object(run: &CallResult) -> Value {
         run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
     let velocities = |(name, velocity): &(String, &str)| json!({ "name": name, "velocity": velocity });
     let mut object = json!({
-        "schema": 2,
+        "schema": 3,
         "scenario": run.scenario,
         "seed": run.seed,
         "version": run.version,
@@ -47,7 +48,7 @@ pub fn object(run: &CallResult) -> Value {
 }
 
 /// A number; one without a fraction is written without one, so that counts are whole.
-fn number(x: f64) -> Value {
+pub(super) fn number(x: f64) -> Value {
     if x.fract() == 0.0 && x.abs() < LARGEST_WHOLE { json!(x as i64) } else { json!(x) }
 }
 
@@ -78,7 +79,7 @@ fn result(result: &QueryResult) -> Value {
     put("query", json!(result.asked.text));
     put("file", json!(result.asked.file));
     put("line", json!(result.asked.line));
-    put("settings", settings(&result.asked.settings));
+    put("settings", setting::object(&result.asked.settings));
     put("kind", json!(result.asked.kind.name()));
     put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
     put("certifies", json!(result.certifies));
@@ -120,7 +121,7 @@ fn result(result: &QueryResult) -> Value {
             let mut object = numbered("option", &option.label, &option.value, &option.counts);
             object.insert("status".into(), json!(option.status.name()));
             if !option.settings.is_empty() {
-                object.insert("settings".into(), settings(&option.settings));
+                object.insert("settings".into(), setting::object(&option.settings));
             }
             Value::Object(object)
         });
@@ -137,10 +138,6 @@ fn result(result: &QueryResult) -> Value {
     put("replay", json!(result.replay));
     put("elapsed_s", json!(result.elapsed_s));
     Value::Object(object)
-}
-
-fn settings(settings: &[(String, String)]) -> Value {
-    settings.iter().map(|(name, value)| (name.clone(), json!(value))).collect()
 }
 
 fn method(method: &Method) -> Value {

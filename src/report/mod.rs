@@ -6,6 +6,8 @@
 
 pub mod advice;
 pub mod behaviours;
+pub mod brief;
+pub mod csv;
 mod escape;
 pub mod evaluate;
 mod exit;
@@ -22,6 +24,7 @@ pub mod number;
 pub mod palette;
 pub mod paths;
 mod phrase;
+mod setting;
 pub mod svg;
 pub mod text;
 pub mod walked;
@@ -39,6 +42,10 @@ pub enum Format {
     /// For people.
     #[default]
     Text,
+    /// For people in a hurry: one line a query.
+    Brief,
+    /// A table, one row a result, an option or a side.
+    Csv,
     /// One JSON object, `docs/schema/verdict.schema.json`.
     Json,
     /// `JUnit` XML for continuous integration.
@@ -49,10 +56,19 @@ pub enum Format {
     Html,
 }
 
-/// The report of a run, ending with a line end. Only text uses the palette.
+impl Format {
+    /// Whether programs read it, who want an answer in every case.
+    pub const fn is_for_programs(self) -> bool {
+        !matches!(self, Self::Text | Self::Brief)
+    }
+}
+
+/// The report of a run, ending with a line end. Only text for people uses the palette.
 pub fn render(run: &CallResult, format: Format, palette: Palette) -> String {
     match format {
         Format::Text => painted(&text::render(run, Palette::PLAIN), &text::render(run, palette)),
+        Format::Brief => painted(&brief::render(run, Palette::PLAIN), &brief::render(run, palette)),
+        Format::Csv => visible(&csv::render(run)).into_owned(),
         Format::Json => json::render(run),
         Format::Junit => visible(&junit::render(run)).into_owned(),
         Format::Github => visible(&github::render(run)).into_owned(),

@@ -11,6 +11,9 @@ use crate::stats::Estimate;
 const SMALL: f64 = 1e-4;
 /// Significant digits of a number without an uncertainty.
 const EXACT: usize = 6;
+/// Seconds of a minute and of an hour.
+const MINUTE: f64 = 60.0;
+const HOUR: f64 = 3600.0;
 
 /// An estimate and its interval, ready to print.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -166,6 +169,26 @@ pub fn counted(n: u64, noun: &str) -> String {
     format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
 }
 
+/// The unit in which people read a quantity of about this size, and how many of the given unit it has: times from 2 min
+/// on in minutes, from 2 h on in hours.
+pub fn readable(unit: &str, size: f64) -> (&str, f64) {
+    match (unit, size.abs()) {
+        ("s", size) if size.is_finite() && size >= 2.0 * HOUR => ("h", HOUR),
+        ("s", size) if size.is_finite() && size >= 2.0 * MINUTE => ("min", MINUTE),
+        _ => (unit, 1.0),
+    }
+}
+
+/// A moment of a trial, to the last digit: `3.42 s`, `6 min 12.5 s`, `2 h 0 min 3 s`.
+pub fn clock(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 2.0 * MINUTE {
+        return format!("{} s", plain(seconds));
+    }
+    let (hours, minutes) = ((seconds / HOUR).floor(), (seconds / MINUTE).floor());
+    let rest = format!("{} min {} s", minutes - 60.0 * hours, plain(thousandths(seconds - MINUTE * minutes)));
+    if hours > 0.0 { format!("{hours} h {rest}") } else { rest }
+}
+
 /// A duration: `21 ms`, `1.32 s`, `2 min 5 s`.
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
@@ -226,6 +249,12 @@ mod tests {
             ["3 µs", "21 ms", "1.00 s", "1.32 s", "2 min 5 s", "?"]
         );
         assert_eq!([-0.013_390_7, 13.0785, 30.0, 12_345.6].map(brief), ["-0.01339", "13.08", "30", "12350"]);
+        assert_eq!(
+            [3.42, 119.5, 372.5, 7203.0].map(clock),
+            ["3.42 s", "119.5 s", "6 min 12.5 s", "2 h 0 min 3 s"]
+        );
+        assert_eq!([119.0, 120.0, 7200.0].map(|x| readable("s", x).0), ["s", "min", "h"]);
+        assert_eq!([readable("m", 1e9), readable("s", f64::INFINITY)], [("m", 1.0), ("s", 1.0)]);
         let rounded = [2.800_000_000_000_000_3, -0.000_4, -7.149_6, 0.1 + 0.2].map(thousandths);
         assert_eq!(rounded.map(|x| x.to_string()), ["2.8", "0", "-7.15", "0.3"]);
         assert_eq!([0.05, 1e-7, 30.0, 2_093.0, 0.1 + 0.2].map(plain), ["0.05", "1e-7", "30", "2093", "0.3"]);

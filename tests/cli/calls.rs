@@ -1,6 +1,7 @@
 //! Exit codes, budgets, settings, interruption, a closed pipe.
 
 use crate::program::{Place, SMALL, Said};
+use serde_json::json;
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -71,7 +72,7 @@ fn settings_and_sweeps() {
     assert_eq!(number(&["--set", "density=0.4 /m^2"])[0].1, 6.0);
     let swept = number(&["--set", "density=0.2..0.4 by 0.1"]);
     assert_eq!(swept.iter().map(|r| r.1).collect::<Vec<_>>(), [3.0, 5.0, 6.0]);
-    assert_eq!(swept[1].0["density"], "0.3 /m^2");
+    assert_eq!(swept[1].0["density"], json!({ "value": 0.3, "unit": "/m^2" }));
 }
 
 #[test]

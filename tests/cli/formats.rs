@@ -81,3 +81,47 @@ fn formats_for_machines_and_people() {
     assert_eq!(said.code, Some(2), "a report that cannot be written is an error");
     assert!(said.out.contains("violated"), "the results are printed all the same");
 }
+
+#[test]
+fn several_formats_in_one_call() {
+    let place = Place::new(&[
+        ("a.scn", SMALL),
+        ("a.bltl", "estimate P(F<=1 s contact(user)) by fixed(trials = 9)\n"),
+    ]);
+    let call = |words: &[&str]| {
+        place.call(&[&["check", "a.scn", "a.bltl", "-q", "--set", "density=0..0.4 by 0.2"], words].concat())
+    };
+    let said = call(&["--format", "json=a.json", "--format", "csv=a.csv", "--brief"]);
+    assert_eq!((said.code, said.out.lines().count()), (Some(0), 3), "{}{}", said.out, said.err);
+    let file = |name: &str| std::fs::read_to_string(place.path(name)).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&file("a.json")).unwrap();
+    validated(&json);
+    // Each number of the table is that of the object.
+    let mut table = csv::Reader::from_reader(std::io::Cursor::new(file("a.csv")));
+    let heads = table.headers().unwrap().clone();
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 3);
+    for (row, result) in rows.iter().zip(json["results"].as_array().unwrap()) {
+        for name in ["estimate", "low", "high", "trials", "successes"] {
+            assert_eq!(row[column(name)].parse::<f64>().unwrap(), result[name].as_f64().unwrap(), "{name}");
+        }
+        let density = &result["settings"]["density"]["value"];
+        assert_eq!(row[column("density (/m^2)")].parse::<f64>().unwrap(), density.as_f64().unwrap());
+    }
+    // Text is what people get beside a file.
+    assert!(call(&["--format", "csv=a.csv"]).out.contains("replay:"));
+    for (words, reason) in [
+        (["--format", "json", "--format", "csv"], "two formats are for standard output"),
+        (["--format", "json", "--format", "brief"], "two formats are for standard output"),
+        (["--format", "json=a", "--format", "csv=a"], "two results are to be written to `a`"),
+        (["--format", "csv=a", "--report", "a"], "two results are to be written to `a`"),
+        (["--format", "csv=a.scn", "--format", "json"], "would overwrite the input `a.scn`"),
+        (["--format", "csv=", "--format", "json"], "the name of the file is missing"),
+        (["--format", "xml", "--format", "json"], "the formats are text, brief, csv, json, junit, github"),
+        (["--format", "csv=none/a", "--format", "json"], "`none/a` cannot be written"),
+    ] {
+        let said = call(&words);
+        assert!(said.code == Some(2) && said.err.contains(reason), "{words:?}: {}", said.err);
+    }
+}

@@ -4,7 +4,7 @@ use super::rows::{MARGIN, line, printed};
 use super::{compare, distribution, rank};
 use crate::engine::at_most;
 use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shortfall, Shows, Stop, Verdict, Witness};
-use crate::report::number::{count, counted, duration, interval, plain};
+use crate::report::number::{clock, count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
 use crate::report::phrase::{certified, one_line, settings};
 use std::fmt::Write as _;
@@ -63,7 +63,7 @@ pub(super) fn head(text: &mut String, result: &QueryResult, palette: Palette) {
 }
 
 /// The word at the head of a result.
-pub(super) fn word(result: &QueryResult) -> (&'static str, Paint) {
+pub(in crate::report) fn word(result: &QueryResult) -> (&'static str, Paint) {
     match result.verdict {
         Some(verdict @ Verdict::Satisfied) => (verdict.name(), Paint::Good),
         Some(verdict @ Verdict::Violated) => (verdict.name(), Paint::Bad),
@@ -210,9 +210,13 @@ pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette
     }
 }
 
-/// `3.42 s`, `step 5`
+/// `3.42 s`, `6 min 12.5 s`, `step 5`
 pub(in crate::report) fn moment(time: f64, unit: &str) -> String {
-    if unit == "steps" { format!("step {}", plain(time)) } else { format!("{} {unit}", plain(time)) }
+    match unit {
+        "steps" => format!("step {}", plain(time)),
+        "s" => clock(time),
+        unit => format!("{} {unit}", plain(time)),
+    }
 }
 
 /// The kind of a witness, in words. For a quantile the event is not the claim.

@@ -1,8 +1,8 @@
 //! How the values of a metric are distributed: quantiles, and a histogram in one line.
 
 use super::rows;
-use crate::engine::outcome::{Distribution, Histogram, QueryResult};
-use crate::report::number::{brief, count, interval, plain};
+use crate::engine::outcome::{Distribution, Histogram, Interval, QueryResult};
+use crate::report::number::{brief, count, interval, plain, readable};
 use crate::report::palette::{Paint, Palette};
 use crate::report::phrase::endless;
 
@@ -10,25 +10,26 @@ const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█']
 
 /// Writes the lines of a distribution.
 pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distribution, palette: Palette) {
-    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
+    let (unit, size) = readable(&result.unit, result.estimate.unwrap_or(result.low));
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     // A single one is what was estimated, and stands above.
     if found.quantiles.len() > 1 {
         let parts: Vec<String> = found
             .quantiles
             .iter()
             .map(|q| {
-                format!(
-                    "{} %: {}{unit}",
-                    plain(100.0 * q.level),
-                    interval(&q.value, result.censored).estimate
-                )
+                let Interval { estimate, low, high } = q.value;
+                let value = Interval { estimate: estimate / size, low: low / size, high: high / size };
+                let horizon = result.censored.map(|horizon| horizon / size);
+                format!("{} %: {}{unit}", plain(100.0 * q.level), interval(&value, horizon).estimate)
             })
             .collect();
         rows::line(text, &format!("quantiles {}", parts.join(", ")));
     }
     if let Some(histogram) = &found.histogram {
         let bars = palette.paint(Paint::Neutral, &bars(histogram));
-        let mut said = format!("{}{unit} {bars} {}{unit}", brief(histogram.low), brief(histogram.high));
+        let [low, high] = [histogram.low, histogram.high].map(|end| brief(end / size));
+        let mut said = format!("{low}{unit} {bars} {high}{unit}");
         if histogram.below > 0 {
             said = format!("{} at -∞, {said}", count(histogram.below));
         }

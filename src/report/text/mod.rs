@@ -8,7 +8,7 @@ mod rank;
 mod rows;
 mod sweep;
 
-pub(super) use block::{counts, moment, shown, trials};
+pub(super) use block::{counts, moment, shown, trials, word};
 pub(super) use rows::printed;
 
 use super::number::{count, counted, duration};

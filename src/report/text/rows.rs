@@ -3,7 +3,7 @@
 use super::columns::{Cell, lines};
 use crate::engine::outcome::{Interval, QueryResult};
 use crate::report::Palette;
-use crate::report::number::interval;
+use crate::report::number::{interval, readable};
 use std::fmt::Write;
 
 /// Width of the verdict's column, blanks after it included.
@@ -21,10 +21,12 @@ pub(super) fn table(text: &mut String, rows: &[Vec<Cell>], palette: Palette) {
     }
 }
 
-/// The estimate and its interval, each with its unit.
+/// The estimate and its interval, each with its unit. Long times are in minutes or hours.
 pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
-    let printed = interval(value, result.censored);
-    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
+    let (unit, size) = readable(&result.unit, result.estimate.unwrap_or(result.low));
+    let scaled = Interval { estimate: value.estimate / size, low: value.low / size, high: value.high / size };
+    let printed = interval(&scaled, result.censored.map(|horizon| horizon / size));
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let mut estimate = format!("{}{unit}", printed.estimate);
     if value.estimate == f64::INFINITY && result.censored.is_some() {
         estimate += " (within the horizon)";

@@ -1,0 +1,46 @@
+//! One line a query: the verdict, the query, its setting, the figures, the number of trials.
+
+use super::palette::{Paint, Palette};
+use super::phrase::{one_line, settings};
+use super::text::columns::{Cell, lines};
+use super::text::{by_query, printed, word};
+use crate::engine::outcome::{CallResult, Interval, QueryResult};
+use crate::report::number::counted;
+use std::fmt::Write as _;
+
+/// The lines of a run, each ending with a line end.
+pub fn render(run: &CallResult, palette: Palette) -> String {
+    let rows: Vec<Vec<Cell>> = by_query(&run.results).into_iter().map(row).collect();
+    let mut text = String::new();
+    for line in lines(&rows, palette) {
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    if run.interrupted {
+        let _ =
+            writeln!(text, "{}", palette.paint(Paint::Caution, "interrupted: these are the results so far"));
+    }
+    if let Some(failure) = &run.failure {
+        let _ = writeln!(text, "{}{}", palette.paint(Paint::Bad, "stopped: "), failure.message());
+    }
+    text
+}
+
+fn row(result: &QueryResult) -> Vec<Cell> {
+    let (word, paint) = word(result);
+    let query = one_line(&result.asked.text);
+    let asked = query.strip_prefix(word).map_or(query.as_str(), str::trim_start);
+    let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
+        printed(result, &Interval { estimate, low: result.low, high: result.high })
+    });
+    let choice = result.rank.as_ref().map(|ranking| ranking.choice.as_deref().unwrap_or("no choice"));
+    vec![
+        Cell::left(word).paint(paint),
+        Cell::left(asked).paint(Paint::Strong),
+        Cell::left(settings(result)),
+        Cell::left(choice.unwrap_or_default()),
+        Cell::left(estimate),
+        Cell::left(interval),
+        Cell::right(counted(result.consumed.counts.trials, "trial")),
+        Cell::left(result.shortfall().map_or("", |shortfall| shortfall.name())).paint(Paint::Caution),
+    ]
+}
