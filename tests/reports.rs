@@ -68,6 +68,7 @@ fn checks() -> Vec<QueryResult> {
                     other: None,
                     is_between: true,
                 }),
+                agents: vec!["oncoming[4]".into()],
                 command: "smc simulate corridor.scn --seed 7 --trial 17".into(),
             }],
             ..result(AskedQuery { name: Some("safe".into()), ..asked(0, Kind::Check, safe) })

@@ -74,8 +74,47 @@ impl Record {
     }
 }
 
-/// What decided, in words, and the agent and number that did.
-pub(super) type Said = (String, Option<Decider>);
+/// What decided.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Said {
+    /// In words.
+    pub(super) words: String,
+    /// The agent and number that did.
+    pub(super) decider: Option<Decider>,
+    /// All agents that are named, the first few of those who did.
+    pub(super) agents: Vec<String>,
+}
+
+impl Said {
+    /// Other words about the same agents.
+    fn saying(self, words: String) -> Self {
+        Self { words, ..self }
+    }
+
+    /// Whether there are words.
+    fn is_told(&self) -> bool {
+        !self.words.is_empty()
+    }
+
+    /// These words, followed by others with their agents.
+    fn with(self, more: Self) -> Self {
+        Self { words: self.words + &more.words, ..more }
+    }
+
+    /// Several, told one after the other.
+    fn joined(mut list: Vec<Self>, between: &str) -> Self {
+        list.dedup_by(|next, last| next.words == last.words);
+        let words = list.iter().map(|one| one.words.as_str()).collect::<Vec<_>>().join(between);
+        let agents = each(list.iter().flat_map(|one| one.agents.clone()).collect());
+        Self { words, decider: list.into_iter().find_map(|one| one.decider), agents }
+    }
+}
+
+impl From<String> for Said {
+    fn from(words: String) -> Self {
+        Self { words, ..Self::default() }
+    }
+}
 
 /// What decided the truth of a formula in a trial; no words where nothing in particular did.
 pub(super) fn truth(
@@ -106,7 +145,7 @@ pub(super) fn truth(
         };
         match last {
             None if explanation.reasons.len() > 1 => {
-                ("no agent of the quantified set was present".to_owned(), None)
+                "no agent of the quantified set was present".to_owned().into()
             }
             None if explanation.reasons.len() == 1 => {
                 closing(prepared, &explanation.reasons[0], recording, &state_at)
@@ -114,13 +153,11 @@ pub(super) fn truth(
             Some(reason) => {
                 let then = of_then(reason);
                 let told = if then.len() <= 2 { then } else { vec![reason] };
-                let (mut list, deciders): (Vec<String>, Vec<Option<Decider>>) =
-                    told.into_iter().map(|one| closing(prepared, one, recording, &state_at)).unzip();
-                list.dedup();
-                (list.join("; "), deciders.into_iter().flatten().next())
+                let list = told.into_iter().map(|one| closing(prepared, one, recording, &state_at));
+                Said::joined(list.collect(), "; ")
             }
             None if explanation.verdict.is_some() => {
-                ("its value does not depend on the trial".to_owned(), None)
+                "its value does not depend on the trial".to_owned().into()
             }
             None => Said::default(),
         }
@@ -134,7 +171,7 @@ pub(super) fn number(
     (value, unit): (f64, &str),
     (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
-) -> (Option<Tick>, String) {
+) -> (Option<Tick>, Said) {
     record.read(prepared, budget, |recording| {
         let (_, found) = sources(&prepared.tree, root, Tick(0), recording);
         let never =
@@ -150,22 +187,27 @@ pub(super) fn number(
                     && !matches!(several, [Source::Signal { .. }])
                     && !several.iter().any(is_beyond) =>
             {
-                (None, text)
+                (None, text.into())
             }
             [Source::Formula(reason)] => {
-                let (closing, _) = closing(prepared, reason, recording, &state_at);
-                (Some(reason.to), format!("{text}, when {closing}"))
+                let closing = closing(prepared, reason, recording, &state_at);
+                let words = format!("{text}, when {}", closing.words);
+                (Some(reason.to), closing.saying(words))
             }
             [Source::Signal { at, .. }] => {
                 let from = origin(prepared, &found[0], false, (&state_at, recording.stop));
-                (Some(*at), format!("{text}, {from}"))
+                let words = format!("{text}, {}", from.words);
+                (Some(*at), from.saying(words))
             }
-            [] => (None, text),
+            [] => (None, text.into()),
             several => {
                 let told = |source: &Source| full(prepared, source, recording, &state_at);
-                let list: Vec<String> =
-                    several.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
-                (None, format!("{text}: {}", list.join(" and ")))
+                let said = Said::joined(
+                    several.iter().map(told).filter(Said::is_told).take(NAMED).collect(),
+                    " and ",
+                );
+                let words = format!("{text}: {}", said.words);
+                (None, Said { decider: None, ..said }.saying(words))
             }
         }
     })
@@ -178,18 +220,18 @@ pub(super) fn margin(
     (value, unit): (Option<f64>, &str),
     (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
-) -> (Option<Tick>, String) {
+) -> (Option<Tick>, Said) {
     record.read(prepared, budget, |recording| {
         let Some(found) = critical(&prepared.tree, root, recording) else {
-            return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
+            return (None, value.map_or(String::new(), |value| words::brief(value, unit)).into());
         };
         // All conditions have the unit of the margin, which a probability of it has not.
         let condition = prepared.texts.comparisons.get(&found.leaf.0);
         let own = condition.map_or(String::new(), |(_, dimension)| dimension.to_string());
         let unit = if unit.is_empty() { own.as_str() } else { unit };
-        let mut said = format!("margin {}", words::brief(value.unwrap_or(found.margin), unit));
+        let mut said = Said::from(format!("margin {}", words::brief(value.unwrap_or(found.margin), unit)));
         if let Some((text, _)) = condition.filter(|(text, _)| !text.is_empty()) {
-            said = format!("{said}, of `{text}`");
+            said.words = format!("{}, of `{text}`", said.words);
         }
         if let (Some(state), Node::Compare(_, x, y)) =
             (state_at(found.at), &prepared.tree.nodes[found.leaf.0 as usize])
@@ -203,8 +245,7 @@ pub(super) fn margin(
             if search.is_empty() {
                 spoken_of(&mut search, prepared, found.leaf);
             }
-            let named = search.named();
-            said.push_str(&names(prepared, &named, Some(&state)));
+            said = said.with(names(prepared, &search.named(), &state));
         }
         (Some(found.at), said)
     })
@@ -216,10 +257,12 @@ fn origin(
     source: &Source,
     full: bool,
     (state_at, stop): (&impl Fn(Tick) -> Option<State>, &dyn Fn() -> bool),
-) -> String {
-    let Source::Signal { signal, at, value } = source else { return String::new() };
-    let Some((text, dimension)) = prepared.texts.signals.get(signal.0 as usize) else { return String::new() };
-    let mut said = if full {
+) -> Said {
+    let Source::Signal { signal, at, value } = source else { return Said::default() };
+    let Some((text, dimension)) = prepared.texts.signals.get(signal.0 as usize) else {
+        return Said::default();
+    };
+    let said = if full {
         format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), moment(prepared, *at))
     } else {
         format!("`{text}`")
@@ -232,9 +275,9 @@ fn origin(
             search.name_all_in(signal);
         }
         search.name_members(text, |tell| signal.mentions(tell));
-        said.push_str(&names(prepared, &search.named(), Some(&state)));
+        return Said::from(said).with(names(prepared, &search.named(), &state));
     }
-    said
+    said.into()
 }
 
 /// One of several sources of a number, with its moment.
@@ -243,11 +286,12 @@ fn full(
     source: &Source,
     recording: &Recording<'_>,
     state_at: &impl Fn(Tick) -> Option<State>,
-) -> String {
+) -> Said {
     match source {
         Source::Formula(reason) => {
-            let (closing, _) = closing(prepared, reason, recording, state_at);
-            format!("{closing} at {}", moment(prepared, reason.to))
+            let closing = closing(prepared, reason, recording, state_at);
+            let words = format!("{} at {}", closing.words, moment(prepared, reason.to));
+            closing.saying(words)
         }
         signal @ Source::Signal { .. } => origin(prepared, signal, true, (state_at, recording.stop)),
     }
@@ -261,15 +305,16 @@ fn moment(prepared: &PreparedWorld, at: Tick) -> String {
 }
 
 /// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
-fn names(prepared: &PreparedWorld, who: &[AgentId], state: Option<&State>) -> String {
-    let names: Vec<String> = who.iter().filter_map(|id| name_of(prepared, *id, state)).collect();
-    if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
+fn names(prepared: &PreparedWorld, who: &[AgentId], state: &State) -> Said {
+    let agents: Vec<String> = who.iter().filter_map(|id| name_of(prepared, *id, state)).collect();
+    let words = if agents.is_empty() { String::new() } else { format!(": {}", agents.join(", ")) };
+    Said { words, decider: None, agents }
 }
 
-fn name_of(prepared: &PreparedWorld, id: AgentId, state: Option<&State>) -> Option<String> {
+fn name_of(prepared: &PreparedWorld, id: AgentId, state: &State) -> Option<String> {
     let scenario: &Scenario = &prepared.program.scenario;
     let agent = scenario.agents.get(id.0 as usize)?;
-    let arrival = state.and_then(|state| state.queues.arrival(&scenario.sources, id, 0));
+    let arrival = state.queues.arrival(&scenario.sources, id, 0);
     Some(arrival.unwrap_or_else(|| agent.name.clone()))
 }
 
@@ -284,7 +329,7 @@ fn closing(
     match &prepared.tree.nodes[reason.leaf.0 as usize] {
         Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms()[atom.0 as usize] => {
             let name = prepared.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
-            (format!("{name} is {}present", if reason.value { "" } else { "not " }), None)
+            format!("{name} is {}present", if reason.value { "" } else { "not " }).into()
         }
         Node::Atom(atom) => {
             let Some(text) = prepared.texts.atoms.get(atom.0 as usize) else { return Said::default() };
@@ -300,9 +345,9 @@ fn closing(
                 let mut search = Search::of(prepared, state, stop);
                 search.walk(condition, reason.value);
                 search.name_members(text, |tell| condition.mentions(tell));
-                let (named, decider) = decided(prepared, search, state);
-                if !named.is_empty() {
-                    return (format!("`{text}` {word}{named}"), decider);
+                let named = decided(prepared, search, state);
+                if named.is_told() {
+                    return Said::from(format!("`{text}` {word}")).with(named);
                 }
             }
             let of = |state: &State| {
@@ -311,7 +356,7 @@ fn closing(
             };
             let copies = state.as_ref().map_or_else(Vec::new, of);
             let colon = if copies.is_empty() { "" } else { ": " };
-            (format!("`{text}` {word}{colon}{}", copies.join(", ")), None)
+            format!("`{text}` {word}{colon}{}", copies.join(", ")).into()
         }
         Node::Compare(..) => {
             let Some((text, _)) = prepared.texts.comparisons.get(&reason.leaf.0) else {
@@ -319,16 +364,17 @@ fn closing(
             };
             let found = sides(&prepared.tree, reason.leaf, reason.to, recording);
             let told = |source: &Source| full(prepared, source, recording, state_at);
-            let list: Vec<String> =
-                found.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
+            let list: Vec<Said> = found.iter().map(told).filter(Said::is_told).take(NAMED).collect();
+            let head = format!("`{text}` {word}");
             if list.is_empty() {
-                let Some(state) = state_at(reason.to) else { return (format!("`{text}` {word}"), None) };
+                let Some(state) = state_at(reason.to) else { return head.into() };
                 let mut search = Search::of(prepared, &state, recording.stop);
                 spoken_of(&mut search, prepared, reason.leaf);
-                let (named, decider) = decided(prepared, search, &state);
-                return (format!("`{text}` {word}{named}"), decider);
+                return Said::from(head).with(decided(prepared, search, &state));
             }
-            (format!("`{text}` {word}: {}", list.join(" and ")), None)
+            let said = Said::joined(list, " and ");
+            let words = format!("{head}: {}", said.words);
+            Said { decider: None, ..said }.saying(words)
         }
         _ => Said::default(),
     }
@@ -349,7 +395,7 @@ fn because(
             Who::Agent(id) => Some(id),
             Who::Running(of) => found[at].given.get(of as usize).copied(),
         };
-        id.and_then(|id| name_of(prepared, id, Some(state)))
+        id.and_then(|id| name_of(prepared, id, state))
     };
     let parts: Vec<&study::Part> = found.iter().map(|ground| ground.part).collect();
     let texts = prepared.texts.words(&parts, &people)?;
@@ -364,11 +410,11 @@ fn because(
         said.push(words::condition((text, ground.truth)));
     }
     let owners = each(owners);
-    let (mut named, decider) = decided(prepared, search, state);
-    if named.is_empty() && !owners.is_empty() {
-        named = format!(": {}", owners.join(", "));
+    let mut named = decided(prepared, search, state);
+    if !named.is_told() && !owners.is_empty() {
+        named.words = format!(": {}", owners.join(", "));
     }
-    Some((words::because((whole, truth), &said) + &named, decider))
+    Some(Said::from(words::because((whole, truth), &said)).with(named))
 }
 
 /// The agents who are there of whom a comparison of numbers over time speaks one by one.
@@ -384,14 +430,25 @@ fn spoken_of(search: &mut Search<'_>, prepared: &PreparedWorld, leaf: NodeId) {
 
 /// Who was found, in words: the first with its place and the number that was compared.
 fn decided(prepared: &PreparedWorld, search: Search<'_>, state: &State) -> Said {
-    let name = |id| name_of(prepared, id, Some(state));
+    let name = |id| name_of(prepared, id, state);
     let decider = decider::decider(&search, &prepared.program.scenario, name);
-    let named = search.named();
-    let said = match &decider {
-        Some(decider) => {
-            decider::written(decider, &named.iter().filter_map(|id| name(*id)).collect::<Vec<_>>())
+    // A gap has two ends; who is in a set that is compared as a whole did not decide alone.
+    let mut compared = Vec::new();
+    if let Some((a, b)) = search.compared() {
+        for side in [a, b] {
+            side.mentions(&mut |id| {
+                if !compared.contains(&id) {
+                    compared.push(id);
+                }
+            });
         }
-        None => names(prepared, &named, Some(state)),
-    };
-    (said, decider)
+    }
+    compared.truncate(if compared.len() > NAMED { 0 } else { NAMED });
+    let said = names(prepared, &search.named(), state);
+    let Some(decider) = decider else { return said };
+    let words = decider::written(&decider, &said.agents);
+    let own = [Some(decider.agent.clone()), decider.other.clone()].into_iter().flatten();
+    let ends = compared.into_iter().filter_map(name);
+    let agents = each(own.chain(said.agents).chain(ends).collect());
+    Said { words, decider: Some(decider), agents }
 }

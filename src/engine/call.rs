@@ -54,7 +54,7 @@ impl CommandLine {
 
     /// `smc simulate` of a trial under some settings. Each replaces that of the call for the same parameter, and the last
     /// of several for one parameter holds.
-    pub(super) fn simulate(&self, settings: &[(String, String)], seed: u64, trial: u64) -> String {
+    pub fn simulate(&self, settings: &[(String, String)], seed: u64, trial: u64) -> String {
         let is_replaced = |set: &str| settings.iter().any(|(name, _)| name == parameter(set));
         let mut words = self.words("simulate", |set| !is_sweep(set) && !is_replaced(set));
         for (k, (name, value)) in settings.iter().enumerate() {

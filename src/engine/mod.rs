@@ -40,6 +40,7 @@ mod shortfall;
 mod splitting;
 mod tables;
 mod tally;
+pub mod traces;
 mod trial;
 mod watch;
 mod witness;

@@ -1,7 +1,7 @@
 //! Witnesses: the first trial that fails and the first that passes, or those with the smallest and the largest
 //! value of a metric; when that was decided, and by what.
 
-use super::blame;
+use super::blame::{self, Said};
 use super::budget::Budget;
 use super::call::Call;
 use super::cell::Reading;
@@ -67,7 +67,17 @@ fn witness(
     }
     if program.scenario.clock.is_jumps() {
         let (time, value, what) = recall::decision(prepared, column, (trial, call.seed), dimension, budget)?;
-        return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
+        return Some(Witness {
+            shows,
+            trial,
+            value,
+            time,
+            unit,
+            what,
+            decider: None,
+            agents: Vec::new(),
+            command,
+        });
     }
     let mut group = prepared.group(&[column]).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
@@ -96,7 +106,17 @@ fn witness(
             let end = seconds(state.ticks[0]);
             let what = format!("outside its range by an unknown amount: the trial ends at {end} {unit}");
             let time = left.map_or(end, seconds);
-            return Some(Witness { shows, trial, value: None, time, unit, what, decider: None, command });
+            return Some(Witness {
+                shows,
+                trial,
+                value: None,
+                time,
+                unit,
+                what,
+                decider: None,
+                agents: Vec::new(),
+                command,
+            });
         }
         let readings = &group.readings;
         group.observers[0].observe(lane, readings);
@@ -126,18 +146,16 @@ fn witness(
         Some(run.state().clone())
     };
     let now = Tick(run.state().ticks[0]);
-    let mut decider = None;
-    let (value, at, what) = match (prepared.columns[column], observer) {
+    let (value, at, said) = match (prepared.columns[column], observer) {
         (Root::Formula(_), Observer::Formula(monitor)) if record.is_full() => {
-            (None, Tick(monitor.decided_at()[0]), String::new())
+            (None, Tick(monitor.decided_at()[0]), Said::default())
         }
         (Root::Metric(_), Observer::Metric(monitor)) if record.is_full() => {
-            (Some(monitor.value().0[0]), Tick(monitor.decided_at()[0]), String::new())
+            (Some(monitor.value().0[0]), Tick(monitor.decided_at()[0]), Said::default())
         }
         (Root::Formula(root), Observer::Formula(monitor)) => {
-            let (what, by) = blame::truth(prepared, root, (&record, budget), state_at);
-            decider = by;
-            (None, Tick(monitor.decided_at()[0]), what)
+            let said = blame::truth(prepared, root, (&record, budget), state_at);
+            (None, Tick(monitor.decided_at()[0]), said)
         }
         (Root::Robustness(root, _), _) => {
             let value = match observer.reading(0) {
@@ -147,21 +165,33 @@ fn witness(
             if record.is_full() {
                 let time = program.scenario.clock.seconds(now);
                 let what = String::new();
-                return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
+                return Some(Witness {
+                    shows,
+                    trial,
+                    value,
+                    time,
+                    unit,
+                    what,
+                    decider: None,
+                    agents: Vec::new(),
+                    command,
+                });
             }
-            let (at, what) = blame::margin(prepared, root, (value, dimension), (&record, budget), state_at);
-            (value, at.unwrap_or(now), what)
+            let (at, said) = blame::margin(prepared, root, (value, dimension), (&record, budget), state_at);
+            (value, at.unwrap_or(now), said)
         }
         (Root::Metric(root), Observer::Metric(monitor)) => {
             // The monitor may know the value before the last state of a window.
             let value = monitor.value().0[0];
-            let (at, what) = blame::number(prepared, root, (value, dimension), (&record, budget), state_at);
-            (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), what)
+            let (at, said) = blame::number(prepared, root, (value, dimension), (&record, budget), state_at);
+            let said = Said { decider: None, ..said };
+            (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), said)
         }
         _ => return None,
     };
     let time = program.scenario.clock.seconds(at);
-    Some(Witness { shows, trial, value, time, unit, what, decider, command })
+    let Said { words: what, decider, agents } = said;
+    Some(Witness { shows, trial, value, time, unit, what, decider, agents, command })
 }
 
 /// Most states that are kept of a trial, and that number times that of agents.

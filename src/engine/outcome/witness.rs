@@ -44,6 +44,8 @@ pub struct Witness {
     pub what: String,
     /// The agent that decided it, with the number that was compared.
     pub decider: Option<Decider>,
+    /// The agents that `what` names.
+    pub agents: Vec<String>,
     /// Command that shows the trial.
     pub command: String,
 }

@@ -144,6 +144,11 @@ impl Plans {
         self.courses.get(slot.block).is_some_and(|course| (course.stepped & !course.stands).has(slot.lane))
     }
 
+    /// The plan of the agent in a slot; `None` without drivers.
+    pub fn plan(&self, slot: Slot) -> Option<&Plan> {
+        self.held.get(slot.block).map(|block| &block[slot.lane].plan)
+    }
+
     /// What the driver of a slot remembers; `None` without drivers.
     pub fn memory(&self, slot: Slot) -> Option<&Memory> {
         self.held.get(slot.block).map(|block| &block[slot.lane].memory)
