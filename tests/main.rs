@@ -35,6 +35,7 @@ mod mocap;
 mod mutants;
 mod mutation;
 mod nesting;
+mod pages;
 mod perception;
 mod planned;
 mod plans;

@@ -124,7 +124,7 @@ pub(super) struct Check {
     /// Print one line a query, as `--format brief` does.
     #[arg(long)]
     pub(super) brief: bool,
-    /// Also write a self-contained HTML page with charts.
+    /// Also write a self-contained HTML page with charts and a player of the trials behind the results.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
     /// Answer only this query: the name of its property, or its number in writing order, starting at 0 (each measure of a
@@ -191,6 +191,9 @@ pub(super) struct Simulate {
     /// File to write; standard output by default.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Write a self-contained HTML page that plays the trials; the table is then written only with `--output`.
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) report: Option<PathBuf>,
 }
 
 /// Formats of traces.

@@ -7,18 +7,20 @@ use super::outputs::Outputs;
 use super::progress::Progress;
 use super::ranks::ProcessPool;
 use super::terminal::{Colors, print, say};
-use super::{complaint, inputs, output, ranks};
+use super::{complaint, inputs, output, page, ranks};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
 use crate::compile::Study;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{CallResult, Failure, Finding};
+use crate::engine::traces::{Traces, traces};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
 };
 use crate::gait;
 use crate::library;
 use crate::model::Scenario;
+use crate::report::html::Page;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::route::Ways;
 use crate::syntax::codes::Code;
@@ -49,7 +51,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         findings: inputs::findings(&inputs.diagnostics, &inputs.sources),
         errors: inputs.errors,
         prints: inputs.prints.clone(),
-        outputs: Outputs { screen: screen(arguments), files: Vec::new() },
+        outputs: Outputs { screen: screen(arguments), files: Vec::new(), page: None },
     };
     match outputs {
         Ok(outputs) => reporter.outputs = outputs,
@@ -110,7 +112,9 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
                 run.warnings.extend(pool.warnings());
             }
             drop(pool);
-            reporter.finish(run)
+            let room = report::html::MOST_NUMBERS;
+            let shown = reporter.outputs.page.is_some().then(|| traces(study, &run, &call, &budget, room));
+            reporter.finish(run, shown.unwrap_or_default())
         }
         Err(fault) => reporter.fault(&fault),
     }
@@ -219,13 +223,13 @@ impl Reporter<'_> {
     }
 
     /// A report of a run that never began, in formats for machines; people have read it already.
-    fn hand_out(self, reason: String) -> Exit {
+    fn hand_out(mut self, reason: String) -> Exit {
         let run = CallResult {
             scenario: self.arguments.model.scenario.clone(),
             seed: self.arguments.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            inputs: self.prints,
-            diagnostics: self.findings,
+            inputs: std::mem::take(&mut self.prints),
+            diagnostics: std::mem::take(&mut self.findings),
             failure: Some(Failure::Input(reason)),
             replay: format!("{} --seed {}", line(self.arguments).check(), self.arguments.seed),
             ..CallResult::default()
@@ -235,19 +239,34 @@ impl Reporter<'_> {
         {
             complaint::tell(&complaint::output(reason), &[], self.colors);
         }
-        files(&self.outputs, &run, self.colors);
+        self.write(run, Traces::default());
         Exit::Wrong
     }
 
+    /// Writes the files that were asked for.
+    fn write(&self, run: CallResult, traces: Traces) -> Exit {
+        let mut exit = Exit::Success;
+        for (format, path) in &self.outputs.files {
+            let text = report::render(&run, *format, Palette::PLAIN);
+            if let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) {
+                complaint::tell(&complaint::unwritten(path, &error), &[], self.colors);
+                exit = Exit::Wrong;
+            }
+        }
+        let Some(path) = &self.outputs.page else { return exit };
+        exit.worse(page::write(path, Page { run, sources: self.sources, traces }, self.colors))
+    }
+
     /// Prints the results of a run.
-    fn finish(mut self, run: CallResult) -> Exit {
+    fn finish(mut self, run: CallResult, traces: Traces) -> Exit {
         self.deadline.enter(Phase::Printing);
         let broken = match &run.failure {
             Some(Failure::Model(flaw)) => Some(library::of_model(flaw)),
             _ => None,
         };
         self.findings.extend(inputs::findings(broken.as_slice(), self.sources));
-        let run = CallResult { inputs: self.prints, diagnostics: self.findings, ..run };
+        let (inputs, diagnostics) = (std::mem::take(&mut self.prints), std::mem::take(&mut self.findings));
+        let run = CallResult { inputs, diagnostics, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
         if let Err(reason) = print(&report::render(&run, self.outputs.screen, palette)) {
@@ -257,7 +276,7 @@ impl Reporter<'_> {
         if let Some(error) = &broken {
             complaint::tell(error, self.sources, self.colors);
         }
-        exit.worse(files(&self.outputs, &run, self.colors))
+        exit.worse(self.write(run, traces))
     }
 }
 
@@ -323,20 +342,6 @@ fn for_machines(chosen: Format, run: &CallResult) {
 pub(super) fn screen(arguments: &Check) -> Format {
     let printed = arguments.format.iter().find(|destination| destination.file.is_none());
     printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format.of())
-}
-
-/// Writes the files that were asked for.
-fn files(outputs: &Outputs, run: &CallResult, colors: Colors) -> Exit {
-    let mut exit = Exit::Success;
-    for (format, path) in &outputs.files {
-        let text = report::render(run, *format, Palette::PLAIN);
-        if let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) {
-            let error = format!("`{}` cannot be written: {error}", path.display());
-            complaint::tell(&complaint::output(error), &[], colors);
-            exit = Exit::Wrong;
-        }
-    }
-    exit
 }
 
 /// File and line of a place.

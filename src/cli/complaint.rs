@@ -6,6 +6,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
 use crate::syntax::source::Source;
+use std::path::Path;
 
 /// An argument of the call is wrong.
 pub(super) fn argument(title: impl Into<String>, hint: impl Into<String>) -> Diagnostic {
@@ -16,6 +17,18 @@ pub(super) fn argument(title: impl Into<String>, hint: impl Into<String>) -> Dia
 pub(super) fn output(title: impl Into<String>) -> Diagnostic {
     Diagnostic::placeless(Code::E0706, title)
         .hint("check that the folder exists, is writable and is not full")
+}
+
+/// A file cannot be written.
+pub(super) fn unwritten(file: &Path, error: &std::io::Error) -> Diagnostic {
+    let missing = file.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+    let file = file.display();
+    match missing {
+        Some(folder) => {
+            output(format!("`{file}` cannot be written: the folder `{}` does not exist", folder.display()))
+        }
+        None => output(format!("`{file}` cannot be written: {error}")),
+    }
 }
 
 /// A file, or standard input, cannot be read.

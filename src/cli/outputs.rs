@@ -37,6 +37,8 @@ impl FromStr for Destination {
 pub(super) struct Outputs {
     pub(super) screen: Format,
     pub(super) files: Vec<(Format, PathBuf)>,
+    /// The page of charts and traces.
+    pub(super) page: Option<PathBuf>,
 }
 
 impl Outputs {
@@ -61,15 +63,16 @@ impl Outputs {
             ));
         }
         let files = chosen.iter().filter_map(|one| Some((one.format.of(), one.file.clone()?)));
-        let files: Vec<_> = files.chain(page.map(|page| (Format::Html, page.to_owned()))).collect();
-        for (at, (_, file)) in files.iter().enumerate() {
-            if files[..at].iter().any(|(_, other)| other == file || output::is_same(other, file)) {
+        let files: Vec<_> = files.collect();
+        let names: Vec<&Path> = files.iter().map(|(_, file)| file.as_path()).chain(page).collect();
+        for (at, file) in names.iter().enumerate() {
+            if names[..at].iter().any(|other| other == file || output::is_same(other, file)) {
                 let title = format!("two results are to be written to `{}`", file.display());
                 return Err(complaint::argument(title, "write each of them to a file of its own"));
             }
             output::guard(Some(file), inputs)?;
         }
-        Ok(Self { screen, files })
+        Ok(Self { screen, files, page: page.map(Path::to_owned) })
     }
 }
 

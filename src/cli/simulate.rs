@@ -2,8 +2,10 @@
 
 use super::arguments::{Simulate, TableFormat};
 use super::complaint;
+use super::end::early_end;
 use super::inputs;
 use super::output;
+use super::page::{self, Trials};
 use super::terminal::{Colors, warn};
 use crate::base::geometry::Vec2;
 use crate::base::random::{MOST_TRIALS, TrialKey};
@@ -13,7 +15,7 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
-use crate::engine::{divergence, no_start, placeable, smaller};
+use crate::engine::{no_start, placeable, smaller};
 use crate::gait;
 use crate::kernel::{Address, End, Program, Run, Slot, State};
 use crate::library;
@@ -129,21 +131,6 @@ impl<'p> Walk<'p> {
         if let Some(reason) = early_end(self.program, self.run.state(), end) {
             self.notes.push(format!("trial {} {reason}", self.trial));
         }
-    }
-}
-
-/// Why a trial ended, if that was before its time.
-pub(super) fn early_end(program: &Program, state: &State, end: End) -> Option<String> {
-    let scenario = &program.scenario;
-    let time = scenario.clock.seconds(Tick(state.ticks[0]));
-    match end {
-        End::Horizon => None,
-        End::Faulty(fault) => Some(format!("ended with an error of the model: {}", fault.describe(scenario))),
-        End::Full => {
-            let reason = state.queues.overrun(&scenario.sources, 0).unwrap_or_default();
-            Some(format!("is unresolved at {time} s: {reason}"))
-        }
-        End::Diverged => Some(format!("diverged at {time} s: {}", divergence(program, state))),
     }
 }
 
@@ -280,9 +267,11 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     let inputs::Loaded { inputs, paths, .. } = inputs::load(&arguments.model, &[]);
     complaint::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
-    if let Err(error) = output::guard(arguments.output.as_deref(), &paths) {
-        complaint::tell(&error, &[], colors);
-        return Exit::Wrong;
+    for written in [&arguments.output, &arguments.report] {
+        if let Err(error) = output::guard(written.as_deref(), &paths) {
+            complaint::tell(&error, &[], colors);
+            return Exit::Wrong;
+        }
     }
     let Some(world) = study.worlds.last() else { return Exit::Wrong };
     if study.worlds.len() > 2 {
@@ -325,6 +314,24 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         }));
     }
     let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
+    if let Some(path) = &arguments.report {
+        let Simulate { seed, trial, trials, .. } = *arguments;
+        let option = arguments.advice.as_ref().map_or(String::new(), |name| format!(" --move '{name}'"));
+        let line = page::line(&arguments.model, arguments.velocity).simulate(&[], seed, trial);
+        let trials = Trials {
+            program: &program,
+            scenario: &arguments.model.scenario,
+            sources: &inputs.sources,
+            seed,
+            list: &mut (trial..trial + trials).map(|index| (index, advice)),
+            last,
+            replay: format!("{line} -n {trials}{option}"),
+        };
+        let exit = trials.write(path, colors);
+        if arguments.output.is_none() || exit != Exit::Success {
+            return exit;
+        }
+    }
     let mut walk = Walk::new(&program, arguments, advice, last);
     if arguments.output.is_some() {
         // The file gets its name only when it is complete: the first signal ends the table, the second one the process.
@@ -353,10 +360,10 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Success,
         Err(error) => {
             let error = match &arguments.output {
-                Some(path) => format!("`{}` cannot be written: {error}", path.display()),
-                None => error.to_string(),
+                Some(path) => complaint::unwritten(path, &error),
+                None => complaint::output(error.to_string()),
             };
-            complaint::tell(&complaint::output(error), &[], colors);
+            complaint::tell(&error, &[], colors);
             Exit::Wrong
         }
     }

@@ -5,7 +5,7 @@ use crate::base::geometry::Vec2;
 use crate::base::lanes::Lanes;
 use crate::base::math;
 use crate::base::random::TrialKey;
-use crate::cli::simulate::early_end;
+use crate::cli::end::early_end;
 use crate::engine::{Executor, Threads, no_start};
 use crate::gait::{Foot, present_foot};
 use crate::kernel::{End, Program, Run, Slot, State};

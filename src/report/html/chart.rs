@@ -108,9 +108,7 @@ pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, hori
     let x = |value: f64| labels + PLOT * axis.share(value);
     let bottom = ROW * marks.len() as f64 + 4.0;
     let (width, height) = (labels + PLOT + NUMBERS, bottom + AXIS);
-    let mut svg = format!(
-        "<svg viewBox=\"0 0 {width:.0} {height:.0}\" style=\"max-width:{width:.0}px\" role=\"img\">\n"
-    );
+    let mut svg = format!("<svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" role=\"img\">\n");
     for &tick in &axis.ticks {
         let at = x(tick);
         let _ = writeln!(

@@ -21,7 +21,7 @@ pub(super) fn bars(histogram: &Histogram, unit: &str, endless: &str) -> String {
     let width = WIDTH / bins;
     let height = Axis::around([0.0, most as f64], false);
     let mut svg = format!(
-        "<svg viewBox=\"0 0 {:.0} {:.0}\" style=\"max-width:{:.0}px\" role=\"img\">\n",
+        "<svg viewBox=\"0 0 {:.0} {:.0}\" width=\"{:.0}\" role=\"img\">\n",
         WIDTH + 2.0 * MARGIN,
         HEIGHT + 22.0,
         WIDTH + 2.0 * MARGIN
@@ -42,10 +42,10 @@ pub(super) fn bars(histogram: &Histogram, unit: &str, endless: &str) -> String {
         );
     }
     for (at, value) in [(MARGIN, histogram.low), (MARGIN + WIDTH, histogram.high)] {
-        let anchor = if at > MARGIN { "end" } else { "start" };
+        let class = if at > MARGIN { "last" } else { "first" };
         let _ = writeln!(
             svg,
-            "<text class=\"tick\" style=\"text-anchor:{anchor}\" x=\"{at:.1}\" y=\"{:.1}\">{} {unit}</text>",
+            "<text class=\"tick {class}\" x=\"{at:.1}\" y=\"{:.1}\">{} {unit}</text>",
             HEIGHT + 16.0,
             plain(value)
         );

@@ -1,0 +1,154 @@
+//! The texts of scenarios and properties with their words marked.
+
+use crate::report::escape::escape;
+use std::fmt::Write as _;
+
+/// Words with a meaning of their own in both languages.
+const KEYWORDS: [&str; 78] = [
+    "E",
+    "F",
+    "G",
+    "P",
+    "Q",
+    "R",
+    "U",
+    "W",
+    "X",
+    "agent",
+    "agents",
+    "along",
+    "as",
+    "at",
+    "behaviour",
+    "bias",
+    "by",
+    "cell",
+    "check",
+    "choose",
+    "circle",
+    "compare",
+    "confidence",
+    "const",
+    "count",
+    "estimate",
+    "except",
+    "exists",
+    "false",
+    "family",
+    "for",
+    "forall",
+    "from",
+    "group",
+    "groups",
+    "heading",
+    "horizon",
+    "import",
+    "in",
+    "kind",
+    "let",
+    "max",
+    "mean",
+    "min",
+    "moves",
+    "near",
+    "obstacle",
+    "of",
+    "on",
+    "param",
+    "particle",
+    "paths",
+    "point",
+    "polygon",
+    "preset",
+    "process",
+    "property",
+    "radius",
+    "rank",
+    "rect",
+    "region",
+    "route",
+    "scenario",
+    "scene",
+    "source",
+    "state",
+    "step",
+    "sum",
+    "then",
+    "to",
+    "tracks",
+    "true",
+    "under",
+    "uniform",
+    "wall",
+    "when",
+    "with",
+    "within",
+];
+
+/// A text as HTML; longer ones than `most` bytes are cut at the end of a line.
+pub(super) fn highlighted(text: &str, most: usize) -> String {
+    let shown = match text.get(..most) {
+        Some(start) => &text[..start.rfind('\n').map_or(0, |at| at + 1)],
+        None if text.len() > most => text.lines().next().unwrap_or_default(),
+        None => text,
+    };
+    let mut html = String::with_capacity(2 * shown.len());
+    let mut rest = shown;
+    while let Some(first) = rest.chars().next() {
+        let (length, class) = token(rest, first);
+        let (word, after) = rest.split_at(length);
+        let word = escape(word);
+        let _ = match class {
+            Some(class) => write!(html, "<span class=\"{class}\">{word}</span>"),
+            None => write!(html, "{word}"),
+        };
+        rest = after;
+    }
+    if shown.len() < text.len() {
+        let _ = write!(html, "… ({} more bytes)", text.len() - shown.len());
+    }
+    html
+}
+
+/// Length of the first token, and its class.
+fn token(text: &str, first: char) -> (usize, Option<&'static str>) {
+    let until =
+        |end: &str, from: usize| text[from..].find(end).map_or(text.len(), |at| from + at + end.len());
+    let while_ = |is_part: &dyn Fn(char) -> bool| text.find(|c| !is_part(c)).unwrap_or(text.len());
+    if text.starts_with("//") {
+        return (text.find('\n').unwrap_or(text.len()), Some("comment"));
+    }
+    if text.starts_with("/*") {
+        return (until("*/", 2), Some("comment"));
+    }
+    if first == '"' {
+        return (until("\"", 1), Some("string"));
+    }
+    if first.is_ascii_digit() {
+        return (while_(&|c| c.is_ascii_alphanumeric() || c == '_'), Some("number"));
+    }
+    if first.is_alphabetic() || first == '_' {
+        let length = while_(&|c| c.is_alphanumeric() || c == '_');
+        return (length, KEYWORDS.contains(&&text[..length]).then_some("keyword"));
+    }
+    (first.len_utf8(), None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keywords_are_sorted_and_marked_and_nothing_gets_out() {
+        assert!(KEYWORDS.is_sorted());
+        let html = highlighted("let a = \"</pre>\" // <b>\nat=1.5", 1000);
+        assert_eq!(
+            html,
+            "<span class=\"keyword\">let</span> a = <span class=\"string\">&quot;&lt;/pre&gt;&quot;</span> \
+             <span class=\"comment\">// &lt;b&gt;</span>\n<span class=\"keyword\">at</span>=<span class=\"number\">1</span>.\
+             <span class=\"number\">5</span>"
+        );
+        assert_eq!(highlighted("é\n\"ü", 1000), "é\n<span class=\"string\">&quot;ü</span>");
+        assert_eq!(highlighted("a\nbb\n", 4), "a\n… (3 more bytes)");
+    }
+}

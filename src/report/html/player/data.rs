@@ -1,0 +1,193 @@
+//! The data of the player as JSON: positions as differences from frame to frame.
+
+use super::scene::Scene;
+use crate::engine::outcome::CallResult;
+use crate::engine::traces::{Millimetres, Shown, Trace};
+use crate::report::number::count;
+use crate::report::phrase::{one_line, settings};
+use crate::report::text;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// All that the player shows.
+#[derive(Debug, Serialize)]
+pub(super) struct Data {
+    scenes: Vec<Scene>,
+    traces: Vec<Motion>,
+    pub(super) entries: Vec<Entry>,
+}
+
+/// The agents of a trace.
+#[derive(Debug, Serialize)]
+struct Motion {
+    scene: usize,
+    trial: u64,
+    spacing: f64,
+    frames: usize,
+    end: f64,
+    tracks: Vec<Track>,
+    plans: Vec<Plan>,
+}
+
+#[derive(Debug, Serialize)]
+struct Track {
+    agent: usize,
+    name: String,
+    radius: i32,
+    first: usize,
+    /// The first place, then the differences, mm.
+    x: Vec<i32>,
+    y: Vec<i32>,
+}
+
+#[derive(Debug, Serialize)]
+struct Plan {
+    agent: usize,
+    first: usize,
+    x: Vec<i32>,
+    y: Vec<i32>,
+}
+
+/// What can be chosen: a trace as one of a result.
+#[derive(Debug, Serialize)]
+pub(super) struct Entry {
+    trace: usize,
+    /// Of which result it is; it is listed with the others of it.
+    #[serde(skip)]
+    pub(super) result: Option<usize>,
+    /// The trial and what it shows.
+    #[serde(skip)]
+    pub(super) trial: u64,
+    #[serde(skip)]
+    pub(super) shows: Option<crate::engine::outcome::Shows>,
+    pub(super) group: String,
+    pub(super) label: String,
+    /// When it was decided.
+    decided: Option<f64>,
+    moment: Option<String>,
+    what: String,
+    agents: Vec<String>,
+    command: String,
+    bars: Vec<Bar>,
+}
+
+#[derive(Debug, Serialize)]
+struct Bar {
+    text: String,
+    changes: Vec<f64>,
+}
+
+fn differences(points: &[Millimetres], axis: usize) -> Vec<i32> {
+    let mut last = 0;
+    let step = |point: &Millimetres| {
+        let change = point[axis] - last;
+        last = point[axis];
+        change
+    };
+    points.iter().map(step).collect()
+}
+
+impl Data {
+    /// The data of some traces of a run.
+    pub(super) fn of(run: &CallResult, traces: &[Trace]) -> Self {
+        let mut known: Vec<&Arc<crate::model::Scenario>> = Vec::new();
+        let mut data = Self { scenes: Vec::new(), traces: Vec::new(), entries: Vec::new() };
+        for (number, trace) in traces.iter().enumerate() {
+            let scene = known.iter().position(|one| Arc::ptr_eq(one, &trace.scenario)).unwrap_or_else(|| {
+                known.push(&trace.scenario);
+                data.scenes.push(Scene::of(&trace.scenario));
+                known.len() - 1
+            });
+            data.traces.push(motion(scene, trace));
+            if trace.shows.is_empty() {
+                data.entries.push(bare(number, trace));
+            }
+            data.entries.extend(trace.shows.iter().map(|shown| entry(run, number, trace, shown)));
+        }
+        // One list for each result, in the order of the page.
+        data.entries.sort_by_key(|entry| entry.result.map(|k| (run.results[k].asked.index, k)));
+        data
+    }
+}
+
+fn motion(scene: usize, trace: &Trace) -> Motion {
+    let motion = &trace.motion;
+    let track = |track: &crate::engine::traces::Track| Track {
+        agent: track.agent,
+        name: track.name.clone(),
+        radius: track.radius,
+        first: track.first,
+        x: differences(&track.points, 0),
+        y: differences(&track.points, 1),
+    };
+    let plan = |plan: &crate::engine::traces::PlannedWay| Plan {
+        agent: plan.agent,
+        first: plan.first,
+        x: differences(&plan.points, 0),
+        y: differences(&plan.points, 1),
+    };
+    Motion {
+        scene,
+        trial: trace.trial,
+        spacing: motion.spacing,
+        frames: motion.frames,
+        end: trace.end,
+        tracks: motion.tracks.iter().map(track).collect(),
+        plans: motion.plans.iter().map(plan).collect(),
+    }
+}
+
+/// A trial that belongs to no result.
+fn bare(number: usize, trace: &Trace) -> Entry {
+    Entry {
+        trace: number,
+        result: None,
+        trial: trace.trial,
+        shows: None,
+        group: String::new(),
+        label: named(trace),
+        decided: None,
+        moment: None,
+        what: String::new(),
+        agents: Vec::new(),
+        command: String::new(),
+        bars: Vec::new(),
+    }
+}
+
+/// `trial 17`, `trial 17, stop`
+fn named(trace: &Trace) -> String {
+    let option = trace.option.as_ref().map_or(String::new(), |option| format!(", {option}"));
+    format!("trial {}{option}", count(trace.trial))
+}
+
+fn entry(run: &CallResult, number: usize, trace: &Trace, shown: &Shown) -> Entry {
+    let result = &run.results[shown.result];
+    let with = settings(result);
+    let group = if with.is_empty() { String::new() } else { format!(" ({with})") };
+    let label = if shown.label.is_empty() { String::new() } else { format!("{}: ", shown.label) };
+    let outcome = match (shown.shows, &shown.witness) {
+        (Some(shows), _) => text::shown(shows, result.of.is_some()).to_owned(),
+        (None, Some(witness)) => witness.value.map_or(String::new(), |value| {
+            format!("{} {}", crate::report::number::brief(value), result.unit).trim_end().to_owned()
+        }),
+        (None, None) => "unresolved".to_owned(),
+    };
+    let name = if shown.label.is_empty() { named(trace) } else { format!("trial {}", count(trace.trial)) };
+    let witness = shown.witness.as_ref();
+    let bar = |bar: &crate::engine::traces::Bar| Bar { text: bar.text.clone(), changes: bar.changes.clone() };
+    Entry {
+        trace: number,
+        result: Some(shown.result),
+        trial: trace.trial,
+        shows: shown.shows,
+        group: format!("{}{group}", one_line(&result.asked.text)),
+        label: format!("{label}{name} {outcome}").trim_end().to_owned(),
+        decided: witness.map(|one| one.time),
+        moment: witness.map(|one| text::moment(one.time, one.unit)),
+        what: witness.map_or(String::new(), |one| one.what.clone()),
+        agents: witness.map_or_else(Vec::new, |one| one.agents.clone()),
+        command: witness.map_or(String::new(), |one| one.command.clone()),
+        bars: shown.bars.iter().map(bar).collect(),
+    }
+}

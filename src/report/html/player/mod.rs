@@ -1,0 +1,88 @@
+//! The player of a page: the traces behind the results, drawn in the browser.
+
+mod data;
+mod scene;
+mod thin;
+
+use crate::engine::outcome::{CallResult, Shows, Witness};
+use crate::engine::traces::Traces;
+use crate::report::number::{counted, plain};
+use data::Data;
+use thin::{MOST_BYTES, thin};
+
+/// What the template needs of the player.
+#[derive(Clone, Debug)]
+pub(super) struct Player {
+    /// The data, safe inside a script element.
+    pub(super) json: String,
+    /// What is shown and what is left out.
+    pub(super) note: String,
+    /// The entries of each result, with their numbers.
+    pub(super) groups: Vec<(String, Vec<(usize, String)>)>,
+    /// By number: place of the result, trial, what it shows.
+    entries: Vec<(Option<usize>, u64, Option<Shows>)>,
+}
+
+impl Player {
+    /// The player of some traces; `None` without any.
+    pub(super) fn of(run: &CallResult, traces: Traces) -> Option<Self> {
+        let Traces { mut list, mut left_out } = traces;
+        let mut numbers = 0;
+        for trace in &list {
+            numbers = numbers.max(trace.scenario.agents.len());
+        }
+        let thinned = thin(&mut list, MOST_BYTES, |list| json(&Data::of(run, list)).len());
+        if list.is_empty() {
+            return None;
+        }
+        left_out += thinned.traces;
+        let mut spacings: Vec<f64> =
+            list.iter().map(|trace| trace.motion.spacing).filter(|s| *s > 0.0).collect();
+        spacings.sort_by(f64::total_cmp);
+        spacings.dedup();
+        let unit = list[0].unit();
+        let each = match spacings.as_slice() {
+            [] => "The truth of the atoms is shown at each change.".to_owned(),
+            _ if list.iter().all(|trace| trace.motion.tracks.is_empty()) => "No agent is present.".to_owned(),
+            [one] => format!("States every {} {unit}, positions to 1 mm.", plain(*one)),
+            [first, .., last] => format!(
+                "States every {} {unit} to every {} {unit}, positions to 1 mm.",
+                plain(*first),
+                plain(*last)
+            ),
+        };
+        let mut note = each;
+        if thinned.every > 0 {
+            note += &format!(
+                " Of up to {}, one in {} is shown, with those that decided.",
+                counted(numbers as u64, "agent"),
+                thinned.every
+            );
+        }
+        if left_out > 0 {
+            note += &format!(" Left out: {}; a page holds 2 MB.", counted(left_out as u64, "trace"));
+        }
+        let data = Data::of(run, &list);
+        let mut groups: Vec<(String, Vec<(usize, String)>)> = Vec::new();
+        for (number, entry) in data.entries.iter().enumerate() {
+            let label = (number, entry.label.clone());
+            match groups.last_mut().filter(|(group, _)| *group == entry.group) {
+                Some((_, labels)) => labels.push(label),
+                None => groups.push((entry.group.clone(), vec![label])),
+            }
+        }
+        let entries = data.entries.iter().map(|entry| (entry.result, entry.trial, entry.shows)).collect();
+        Some(Self { json: json(&data), note, groups, entries })
+    }
+
+    /// The number of a witness of a result, if it is there.
+    pub(super) fn number(&self, result: usize, witness: &Witness) -> Option<usize> {
+        let wanted = (Some(result), witness.trial, Some(witness.shows));
+        self.entries.iter().position(|entry| *entry == wanted)
+    }
+}
+
+/// Data as JSON in which nothing ends a script element.
+fn json(data: &Data) -> String {
+    serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c")
+}

@@ -1,0 +1,211 @@
+//! The part of a page about one query: alone, or under several settings.
+
+use super::chart::{self, Mark, Tone};
+use super::histogram;
+use crate::engine::outcome::{
+    Interval, QueryResult, RankedOption, Shortfall, Side, Status, Verdict, Witness,
+};
+use crate::report::number::{count, counted};
+use crate::report::phrase::{certified, endless, one_line, settings};
+use crate::report::text;
+
+/// What the page says of a query.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Section {
+    /// The word of the verdict, and its class.
+    pub(super) word: &'static str,
+    pub(super) class: String,
+    pub(super) query: String,
+    pub(super) place: String,
+    /// The intervals as SVG; may be empty.
+    pub(super) chart: String,
+    /// Kind and level of the intervals; empty where they differ.
+    pub(super) intervals: String,
+    /// What a ranking recommends.
+    pub(super) choice: Option<Recommended>,
+    pub(super) results: Vec<Facts>,
+}
+
+/// The recommendation of a ranking: an option between two texts.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Recommended {
+    pub(super) before: &'static str,
+    pub(super) option: String,
+    pub(super) after: &'static str,
+}
+
+/// What is said of one result under the chart.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Facts {
+    /// The settings where there are several; else empty.
+    pub(super) head: String,
+    /// The estimate and its interval.
+    pub(super) figures: String,
+    pub(super) certified: String,
+    pub(super) given: Option<String>,
+    pub(super) trials: String,
+    /// The histogram as SVG; may be empty.
+    pub(super) histogram: String,
+    pub(super) warnings: Vec<String>,
+    pub(super) witnesses: Vec<Shown>,
+    pub(super) replay: String,
+}
+
+/// A witness.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shown {
+    pub(super) moment: String,
+    pub(super) what: String,
+    pub(super) command: String,
+    /// Its number in the player, if it is there.
+    pub(super) played: Option<usize>,
+}
+
+/// What a page says of a query; `played` gives the number of a witness in the player, by the place of its result.
+pub(super) fn section(
+    group: &[(usize, &QueryResult)],
+    played: &impl Fn(usize, &Witness) -> Option<usize>,
+) -> Section {
+    let Some((_, first)) = group.first() else { return Section::default() };
+    let words = group.iter().map(|(_, result)| word(result));
+    let word = words.max_by_key(|word| severity(word)).unwrap_or("computed");
+    let place = match &first.asked {
+        asked if asked.file.is_empty() => String::new(),
+        asked => format!("{}:{}", asked.file, asked.line),
+    };
+    let swept = group.len() > 1;
+    let marks: Vec<Mark> = if swept {
+        group.iter().filter_map(|(_, result)| mark(result, &settings(result))).collect()
+    } else {
+        marks(first)
+    };
+    let theta = |result: &QueryResult| {
+        result.method.numbers.iter().find(|(name, _)| name == "theta").map(|(_, value)| *value)
+    };
+    // A threshold may be a parameter, and is then another in each row.
+    let threshold = theta(first).filter(|_| group.iter().all(|(_, result)| theta(result) == theta(first)));
+    let is_one = group.iter().all(|(_, result)| result.interval == first.interval);
+    Section {
+        word,
+        class: word.replace(' ', "-"),
+        query: one_line(&first.asked.text),
+        place,
+        chart: chart::intervals(&marks, &first.unit, threshold, first.censored),
+        intervals: if is_one { first.interval.clone() } else { String::new() },
+        choice: recommended(first),
+        results: group.iter().map(|(k, result)| facts(*k, result, swept, played)).collect(),
+    }
+}
+
+fn recommended(result: &QueryResult) -> Option<Recommended> {
+    let ranking = result.rank.as_ref()?;
+    let plain = |before| Recommended { before, ..Recommended::default() };
+    Some(match &ranking.choice {
+        None if result.consumed.counts.trials > 0 => plain("No choice: no trial is resolved."),
+        None => plain("No choice: nothing was sampled."),
+        Some(choice) if !result.certifies.is_empty() => Recommended {
+            before: "Choose ",
+            option: choice.clone(),
+            after: if ranking.tied { "; options marked tied have the same certificate." } else { "." },
+        },
+        Some(choice) => Recommended {
+            before: "",
+            option: choice.clone(),
+            after: " is best so far, but nothing is certified.",
+        },
+    })
+}
+
+fn severity(word: &str) -> u8 {
+    match word {
+        "violated" => 3,
+        "undecided" => 2,
+        "satisfied" | "incomplete" | "not begun" => 1,
+        _ => 0,
+    }
+}
+
+fn word(result: &QueryResult) -> &'static str {
+    let computed = result.shortfall().map_or("computed", Shortfall::name);
+    result.verdict.map_or(computed, Verdict::name)
+}
+
+fn facts(
+    place: usize,
+    result: &QueryResult,
+    swept: bool,
+    played: &impl Fn(usize, &Witness) -> Option<usize>,
+) -> Facts {
+    let histogram = result.distribution.as_ref().and_then(|d| d.histogram.as_ref());
+    let histogram = histogram.map(|bins| histogram::bars(bins, &result.unit, endless(result)));
+    let witness = |witness: &Witness| {
+        let Witness { shows, value, trial, time, unit, what, command, .. } = witness;
+        let moment = format!(
+            "{} in trial {}, {} {}",
+            text::shown(*shows, result.of.is_some()),
+            count(*trial),
+            if value.is_some() { "at" } else { "decided at" },
+            text::moment(*time, unit)
+        );
+        Shown { moment, what: what.clone(), command: command.clone(), played: played(place, witness) }
+    };
+    let figures = result.estimate.map_or(String::new(), |estimate| {
+        let value = Interval { estimate, low: result.low, high: result.high };
+        let (estimate, interval) = text::printed(result, &value);
+        format!("estimate {estimate}, interval {interval}")
+    });
+    Facts {
+        head: if swept { settings(result) } else { String::new() },
+        figures,
+        certified: certified(result),
+        given: result.asked.given.clone(),
+        trials: text::trials(result),
+        histogram: histogram.unwrap_or_default(),
+        warnings: result.warnings.clone(),
+        witnesses: result.witnesses.iter().map(witness).collect(),
+        replay: result.replay.clone(),
+    }
+}
+
+/// The rows of the chart of one result.
+fn marks(result: &QueryResult) -> Vec<Mark> {
+    if let Some(ranking) = &result.rank {
+        let tone = |status| match status {
+            Status::Chosen => Tone::Good,
+            Status::Tied => Tone::Plain,
+            Status::Beaten => Tone::Faint,
+            Status::Open => Tone::Caution,
+        };
+        let row = |o: &RankedOption| {
+            let note = format!("{}, {}", o.status.name(), counted(o.counts.trials, "trial"));
+            labelled(result, &o.label, o.value, tone(o.status), &note)
+        };
+        return ranking.options.iter().map(row).collect();
+    }
+    if let Some(sides) = &result.compare {
+        let row = |side: &Side, tone| labelled(result, &side.label, side.value, tone, "");
+        return vec![
+            row(&sides.first, Tone::Plain),
+            row(&sides.second, Tone::Plain),
+            row(&sides.difference, Tone::Good),
+        ];
+    }
+    mark(result, "").into_iter().collect()
+}
+
+fn mark(result: &QueryResult, label: &str) -> Option<Mark> {
+    let value = Interval { estimate: result.estimate?, low: result.low, high: result.high };
+    let tone = match result.verdict {
+        Some(Verdict::Satisfied) => Tone::Good,
+        Some(Verdict::Violated) => Tone::Bad,
+        Some(Verdict::Undecided) => Tone::Caution,
+        None => Tone::Plain,
+    };
+    Some(labelled(result, label, value, tone, ""))
+}
+
+fn labelled(result: &QueryResult, label: &str, value: Interval, tone: Tone, note: &str) -> Mark {
+    let (estimate, interval) = text::printed(result, &value);
+    let note = if note.is_empty() { String::new() } else { format!(" ({note})") };
+    Mark { label: label.to_owned(), value, tone, said: format!("{estimate}  {interval}{note}") }
+}

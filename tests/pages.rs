@@ -1,0 +1,250 @@
+//! The pages of `--report`: what the player is given, that nothing gets out of its element, and that they work in a browser.
+
+use crate::program::Place;
+use base64::Engine as _;
+use serde_json::Value;
+use sha2::Digest as _;
+use std::process::Command;
+
+/// A user meets a crowd in a corridor, and comes too near to somebody in nearly every trial.
+const MEETING: &str = r#"
+scenario "Meeting"
+horizon = 8 s
+step    = 0.02 s
+param people = 3 in 1 .. 9
+scene {
+  wall south: (0, 0) -- (12, 0)
+  wall north: (0, 3) -- (12, 3)
+  obstacle pillar: circle (6, 2.6) radius 0.2 m
+  region east: rect (11, 0) .. (12, 3)
+  region west: rect (0, 0) .. (1, 3)
+}
+kind adult: sfm preset helbing2000 { speed = 1.2 m/s  radius = 0.25 m  noise = 0.1 m/s }
+agent user: adult { at = (1, 1.5)  route = east }
+agents oncoming[people]: adult { at = uniform in rect (8, 0.5) .. (11, 2.5)  route = west }
+moves user for 2 s { stop  heading 20 deg }
+"#;
+const NEAR: &str = "let gap(a) = distance(user, a) - 0.5 m
+property apart = G<=6 s (forall a in oncoming: gap(a) > 0.3 m)
+check P(apart) >= 0.95
+";
+
+fn meeting(properties: &str) -> Place {
+    Place::new(&[("m.scn", MEETING), ("m.bltl", properties)])
+}
+
+fn checked(place: &Place, more: &[&str]) -> (Value, String) {
+    let words = ["check", "m.scn", "m.bltl", "-q", "--seed", "3", "--format", "json", "--report", "m.html"];
+    let said = place.call(&[&words, more].concat());
+    let page = std::fs::read_to_string(place.path("m.html")).unwrap_or_else(|_| panic!("{}", said.err));
+    (said.json(), page)
+}
+
+/// What stands between the tags of the only element that begins so.
+fn element<'p>(page: &'p str, start: &str, end: &str) -> &'p str {
+    assert_eq!(page.matches(start).count(), 1, "{start}");
+    page.split_once(start).unwrap().1.split_once(end).unwrap().0
+}
+
+/// The data of the player.
+fn data(page: &str) -> Value {
+    let text = element(page, "<script type=\"application/json\" id=\"data\">", "</script>");
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+fn list<'v>(value: &'v Value, name: &str) -> &'v [Value] {
+    value[name].as_array().unwrap_or_else(|| panic!("{name}: {value}"))
+}
+
+/// The sums of differences: millimetres.
+fn sums(differences: &Value) -> Vec<i64> {
+    let mut last = 0;
+    let add = |change: &Value| {
+        last += change.as_i64().unwrap();
+        last
+    };
+    differences.as_array().unwrap().iter().map(add).collect()
+}
+
+#[test]
+fn a_page_says_who_decided_and_when() {
+    let place = meeting(NEAR);
+    let (report, page) = checked(&place, &[]);
+    let result = &report["results"][0];
+    assert_eq!(result["verdict"], "violated");
+    let witness = &result["witnesses"][0];
+    let data = data(&page);
+    let entry = &data["entries"][0];
+    assert_eq!(entry["decided"], witness["time"], "{witness}");
+    let deciding: Vec<&str> = list(entry, "agents").iter().map(|name| name.as_str().unwrap()).collect();
+    assert!(deciding.iter().any(|name| name.starts_with("oncoming[")), "{deciding:?}");
+    let names: Vec<&Value> = list(&data["traces"][0], "tracks").iter().map(|track| &track["name"]).collect();
+    for name in deciding {
+        assert!(names.iter().any(|known| **known == name), "{name}: {names:?}");
+    }
+    // The atom holds from the start until it decides.
+    let bar = &list(entry, "bars")[0];
+    assert!(bar["text"].as_str().unwrap().contains("gap(a) > 0.3 m"), "{bar}");
+    let changes: Vec<f64> = list(bar, "changes").iter().map(|time| time.as_f64().unwrap()).collect();
+    assert_eq!(changes[..2], [0.0, witness["time"].as_f64().unwrap()]);
+    // The verdict, its figures, its guarantee and its command come before the player.
+    let head = page.split_once("id=\"player\"").unwrap().0;
+    for said in
+        ["violated", "estimate ", "certified", "smc check m.scn m.bltl --only 0 --seed 3", "class=\"copy\""]
+    {
+        assert!(head.contains(said), "{said}");
+    }
+    assert!(page.contains("States every 0.1 s, positions to 1 mm."));
+}
+
+#[test]
+fn positions_are_those_of_simulate_to_a_millimetre() {
+    let place = meeting(NEAR);
+    let (_, page) = checked(&place, &[]);
+    let data = data(&page);
+    for trace in list(&data, "traces") {
+        let trial = trace["trial"].to_string();
+        let table = place.call(&["simulate", "m.scn", "--seed", "3", "--trial", &trial, "--every", "5"]);
+        let rows: Vec<Vec<&str>> = table.out.lines().skip(1).map(|line| line.split(',').collect()).collect();
+        for track in list(trace, "tracks") {
+            let own: Vec<&Vec<&str>> = rows.iter().filter(|row| track["name"] == row[2]).collect();
+            let (x, y) = (sums(&track["x"]), sums(&track["y"]));
+            assert!(x.len() > 10 && own.len() >= x.len(), "{} of {}", x.len(), own.len());
+            for (frame, row) in own.iter().take(x.len()).enumerate() {
+                let time = frame as f64 * trace["spacing"].as_f64().unwrap();
+                assert!((row[0].parse::<f64>().unwrap() - time).abs() < 1e-9, "{row:?}");
+                for (known, written) in [(x[frame], row[3]), (y[frame], row[4])] {
+                    let metres: f64 = written.parse().unwrap();
+                    assert!((known as f64 / 1000.0 - metres).abs() <= 0.001, "{row:?}: {known}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn each_option_and_each_point_shows_its_first_eight_trials() {
+    let place = meeting(&format!("{NEAR}rank moves of user by P(apart) within 0.2 confidence 90 %\n"));
+    let (_, page) = checked(&place, &["--set", "people=2,4", "--max-trials", "200"]);
+    let data = data(&page);
+    let entries = |part: &str| {
+        let of = |entry: &&Value| entry["group"].as_str().unwrap().contains(part);
+        list(&data, "entries").iter().filter(of).collect::<Vec<_>>()
+    };
+    for point in ["(people = 2)", "(people = 4)"] {
+        let shown: Vec<&Value> = entries(point);
+        let checks =
+            shown.iter().filter(|entry| entry["group"].as_str().unwrap().starts_with("check")).count();
+        assert!(checks >= 8, "{point}: {checks}");
+        for option in ["stop", "heading 20 deg"] {
+            let of = |entry: &&&Value| entry["label"].as_str().unwrap().starts_with(&format!("{option}: "));
+            assert!(shown.iter().filter(of).count() >= 8, "{point}, {option}");
+        }
+    }
+    // Of two numbers of people there are two scenes.
+    let agents: Vec<&Value> = list(&data, "scenes").iter().map(|scene| &scene["agents"]).collect();
+    assert_eq!(agents, [3, 5]);
+}
+
+#[test]
+fn nothing_gets_out_of_its_element() {
+    let hostile = "</script><script>alert('1')</script><!-- \u{2028}\u{202e} \u{1f600}";
+    let long = "n".repeat(3000);
+    let scenario = MEETING.replace("\"Meeting\"", &format!("\"{hostile} {long}\""));
+    let place =
+        Place::new(&[("m.scn", &scenario), ("m.bltl", &format!("// </pre></script>{hostile}\n{NEAR}"))]);
+    let (_, page) = checked(&place, &[]);
+    assert_eq!(page.matches("<script").count(), 2, "the data and the script");
+    assert_eq!(page.matches("</script").count(), 2);
+    assert!(!page.contains("<!-- "));
+    assert!(!list(&data(&page), "entries").is_empty());
+    // The policy allows just the style and the script that are there.
+    let policy = element(&page, "http-equiv=\"Content-Security-Policy\" content=\"", "\"");
+    assert!(policy.starts_with("default-src 'none'; "), "{policy}");
+    for (name, start) in [("script", "<script>"), ("style", "<style>")] {
+        let text = element(&page, start, &format!("</{name}>"));
+        let hash = base64::engine::general_purpose::STANDARD.encode(sha2::Sha256::digest(text));
+        assert!(policy.contains(&format!("{name}-src 'sha256-{hash}'")), "{name}: {policy}");
+    }
+    assert!(
+        !page.contains(" style=\"") && !page.contains(" onclick="),
+        "the policy forbids attributes that do something"
+    );
+}
+
+#[test]
+fn trials_without_results_are_played() {
+    let place = meeting(NEAR);
+    let said = place.call(&["simulate", "m.scn", "-n", "3", "--trial", "5", "--report", "s.html"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{}", said.err);
+    let data = data(&std::fs::read_to_string(place.path("s.html")).unwrap());
+    let trials: Vec<&Value> = list(&data, "traces").iter().map(|trace| &trace["trial"]).collect();
+    assert_eq!(trials, [5, 6, 7]);
+    assert_eq!(data["traces"][0]["frames"], 81);
+}
+
+#[test]
+fn a_crowd_is_thinned_and_the_page_says_so() {
+    let scenario = "horizon = 12 s\nstep = 0.1 s\nscene { region hall: rect (0, 0) .. (160, 160) }\n\
+        kind adult: sfm preset helbing2000 { speed = 1.2 m/s  radius = 0.2 m }\n\
+        agents crowd[5000]: adult { at = uniform in hall  route = (2000, 80) }\n";
+    let place = Place::new(&[("c.scn", scenario)]);
+    let said = place.call(&["simulate", "c.scn", "--report", "c.html"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let page = std::fs::read_to_string(place.path("c.html")).unwrap();
+    assert!(page.len() < 2_100_000, "{} bytes", page.len());
+    let data = data(&page);
+    let spacing = data["traces"][0]["spacing"].as_f64().unwrap();
+    assert!(spacing > 0.15, "{spacing}");
+    assert!(
+        page.contains(&format!("States every {spacing} s")),
+        "the page says how far apart the states are"
+    );
+}
+
+#[test]
+fn a_model_without_agents_has_bars_alone() {
+    let place = Place::new(&[
+        ("m.scn", "horizon = 20 steps\nprocess p { var x: 0 .. 9 = 0  when x < 9 -> x = x + 1 }\n"),
+        ("m.bltl", "check P(F<=15 steps (p.x == 9)) >= 0.5\n"),
+    ]);
+    let (_, page) = checked(&place, &[]);
+    let data = data(&page);
+    assert_eq!(data["scenes"][0]["agents"], 0);
+    let bar = &data["entries"][0]["bars"][0];
+    assert_eq!((&bar["text"], &bar["changes"]), (&"p.x == 9".into(), &serde_json::json!([9.0])));
+    assert!(page.contains("No agent is present."));
+}
+
+#[test]
+fn a_missing_folder_is_named_and_no_file_is_left() {
+    let place = meeting(NEAR);
+    for words in [
+        &["check", "m.scn", "m.bltl", "-q", "--report", "none/m.html"][..],
+        &["simulate", "m.scn", "--report", "none/m.html"],
+    ] {
+        let said = place.call(words);
+        assert_eq!(said.code, Some(2), "{words:?}");
+        let title = "error[E0706]: `none/m.html` cannot be written: the folder `none` does not exist";
+        assert!(said.err.starts_with(title), "{}", said.err);
+    }
+    assert!(!place.path("none").exists());
+}
+
+/// Where there are Chromium and Node.js, a page is played: see `tests/browser/page.mjs`.
+#[test]
+fn a_page_works_in_a_browser() {
+    let is_there =
+        |name: &str| Command::new(name).arg("--version").output().is_ok_and(|out| out.status.success());
+    let browser = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(|name| is_there(name));
+    let Some(browser) = browser.filter(|_| is_there("node")) else {
+        eprintln!("SKIPPED: no Chromium or no Node.js on this machine");
+        return;
+    };
+    let place = meeting(NEAR);
+    checked(&place, &[]);
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser/page.mjs");
+    let page = place.path("m.html");
+    let said = Command::new("node").arg(script).arg(browser).arg(page).output().unwrap();
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stdout));
+}
