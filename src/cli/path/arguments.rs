@@ -24,6 +24,9 @@ pub(in crate::cli) struct PathCommand {
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(in crate::cli) seed: u64,
+    /// Also write a self-contained HTML page that plays the trial, once for each path.
+    #[arg(long, value_name = "FILE.html", requires = "scenario")]
+    pub(in crate::cli) report: Option<PathBuf>,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = PathFormat::Text)]
     pub(in crate::cli) format: PathFormat,

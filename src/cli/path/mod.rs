@@ -8,6 +8,7 @@ pub(super) use arguments::PathCommand;
 use super::complaint;
 use super::inputs;
 use super::output;
+use super::page::{self, Trials};
 use super::terminal::{Colors, print, warn};
 use super::values::Model;
 use crate::base::geometry::Vec2;
@@ -76,8 +77,12 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         data: arguments.data.clone(),
         velocity: None,
     };
-    let inputs = inputs::load(&model, &[]).inputs;
+    let inputs::Loaded { inputs, paths, .. } = inputs::load(&model, &[]);
     complaint::diagnose(&inputs, colors);
+    output::guard(arguments.report.as_deref(), &paths).map_err(|error| {
+        complaint::tell(&error, &[], colors);
+        Exit::Wrong
+    })?;
     let Some(study) = &inputs.study else { return Err(Exit::Wrong) };
     let Some(world) = study.worlds.get(study.base) else { return Err(Exit::Wrong) };
     let refuse = |(reason, hint): Refusal| {
@@ -94,6 +99,22 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         let why = crate::engine::no_start(&scenario, fault);
         refuse((format!("trial {} cannot start: {why}", key.index), "choose another `--trial`".to_owned()))
     })?;
+    if let Some(path) = &arguments.report {
+        let mut list = followed(&scenario, &chosen).into_iter().map(|option| (key.index, option));
+        let trials = Trials {
+            program: &program,
+            scenario: &model.scenario,
+            sources: &inputs.sources,
+            seed: key.seed,
+            list: &mut list,
+            last: scenario.horizon,
+            replay: page::line(&model, None).simulate(&[], key.seed, key.index),
+        };
+        let exit = trials.write(path, colors);
+        if exit != Exit::Success {
+            return Err(exit);
+        }
+    }
     let walkers = ways.walkers(&scenario, arguments.seed);
     let mut found = Vec::new();
     for id in chosen {
@@ -137,6 +158,15 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
             region.map(|region| paths::phase(&region, std::slice::from_ref(course), title)).ok_or(Exit::Wrong)
         }
     }
+}
+
+/// The paths that walkers can be advised to take; none is followed where they have one alone.
+fn followed(scenario: &Scenario, walkers: &[AgentId]) -> Vec<Option<(usize, usize)>> {
+    let declared = scenario.moves.iter().enumerate();
+    let declared = declared.filter(|(_, moves)| moves.paths.is_some() && walkers.contains(&moves.agent));
+    let all = declared.flat_map(|(number, moves)| (0..moves.options.len()).map(move |k| Some((number, k))));
+    let all: Vec<Option<(usize, usize)>> = all.collect();
+    if all.is_empty() { vec![None] } else { all }
 }
 
 /// One line for each path.

@@ -31,6 +31,9 @@ pub(in crate::cli) struct WalkCommand {
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
+    /// Also write a self-contained HTML page that plays the first eight trials.
+    #[arg(long, value_name = "FILE.html")]
+    pub(in crate::cli) report: Option<PathBuf>,
 }
 
 /// Formats of `smc walk`.

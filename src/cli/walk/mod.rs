@@ -8,11 +8,13 @@ pub(super) use arguments::WalkCommand;
 use super::complaint;
 use super::inputs;
 use super::output;
+use super::page::{self, Trials};
 use super::terminal::{Colors, print, warn};
 use crate::base::geometry::Vec2;
 use crate::base::random::{MOST_TRIALS, TrialKey};
 use crate::base::visible::visible;
 use crate::compile::nearest::nearest;
+use crate::engine::traces::FIRST;
 use crate::engine::{Threads, placeable, smaller};
 use crate::gait;
 use crate::kernel::Program;
@@ -23,6 +25,7 @@ use crate::report::number::{counted, plain};
 use crate::report::walked::{self, Walked, WalkedLeg};
 use crate::route::Ways;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Source;
 use arguments::WalkFormat;
 use std::sync::Arc;
 use trials::Task;
@@ -37,8 +40,9 @@ pub(super) fn run(arguments: &WalkCommand, colors: Colors) -> Exit {
     let done = checked(arguments)
         .and_then(|()| if study.worlds.len() > 2 { Err(sweep()) } else { Ok(()) })
         .and_then(|()| output::guard(arguments.output.as_deref(), &paths))
+        .and_then(|()| output::guard(arguments.report.as_deref(), &paths))
         .and_then(|()| placeable(world).map_err(|fault| library::refusal(&fault)))
-        .and_then(|()| walk(arguments, Arc::clone(&world.scenario)));
+        .and_then(|()| walk(arguments, Arc::clone(&world.scenario), (&inputs.sources, colors)));
     done.unwrap_or_else(|error| {
         complaint::tell(&error, &inputs.sources, colors);
         Exit::Wrong
@@ -63,7 +67,11 @@ fn checked(arguments: &WalkCommand) -> Result<(), Diagnostic> {
 }
 
 /// Runs the trials and writes what they gave.
-fn walk(arguments: &WalkCommand, mut scenario: Arc<Scenario>) -> Result<Exit, Diagnostic> {
+fn walk(
+    arguments: &WalkCommand,
+    mut scenario: Arc<Scenario>,
+    (sources, colors): (&[Source], Colors),
+) -> Result<Exit, Diagnostic> {
     let ways = Ways::default();
     library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
     let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
@@ -100,6 +108,20 @@ fn walk(arguments: &WalkCommand, mut scenario: Arc<Scenario>) -> Result<Exit, Di
         shrunk.extend(outcome.has_shrunk.then_some(trial));
     }
     write(arguments, &scenario, &walked)?;
+    if let Some(path) = &arguments.report {
+        let trials = arguments.trials.min(FIRST);
+        let line = page::line(&arguments.model, None).simulate(&[], arguments.seed, 0);
+        let trials = Trials {
+            program: &program,
+            scenario: &arguments.model.scenario,
+            sources,
+            seed: arguments.seed,
+            list: &mut (0..trials).map(|index| (index, None)),
+            last: scenario.horizon,
+            replay: format!("{line} -n {trials}"),
+        };
+        exit = exit.worse(trials.write(path, colors));
+    }
     if let Some(first) = shrunk.first() {
         let key = TrialKey { seed: arguments.seed, index: *first, branch: 0 };
         warn(&format!("warning: {}\n", smaller(&program, key, shrunk.len() as u64)));
