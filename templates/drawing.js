@@ -154,6 +154,7 @@ class Drawing {
     present.forEach((track) => this.agent(track, frame, ink(track)));
     for (const track of present.filter((one) => deciders.has(one.name))) this.decider(track, frame);
     pen.textAlign = 'center';
+    const named = [];
     const singles = present.filter((track) => !track.name.endsWith(']')).length;
     for (const track of present) {
       const decides = deciders.has(track.name);
@@ -161,8 +162,11 @@ class Drawing {
       if (!decides && !isSingle && !(names && (present.length <= MOST_NAMES || this.scale > 60))) continue;
       const place = placeAt(track, frame);
       const [x, y] = this.at(place.x, place.y);
-      const above = Math.max(track.radius * this.scale, 3) + 8;
-      this.label(track.name, x, y - above, decides ? inks.deciding : inks.ink);
+      const away = Math.max(track.radius * this.scale, 3) + 8;
+      // A name above another one's would hide it.
+      const isTaken = named.some((one) => Math.abs(one.x - x) < 60 && Math.abs(one.y - y) < 16);
+      named.push({ x, y });
+      this.label(track.name, x, isTaken ? y + away + 8 : y - away, decides ? inks.deciding : inks.ink);
     }
     this.ruler();
   }
