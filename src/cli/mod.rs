@@ -117,7 +117,7 @@ fn misused(error: &clap::Error) {
 fn format_of(words: &[String]) -> Option<&str> {
     let inline = words.iter().filter_map(|word| word.strip_prefix("--format="));
     let apart = words.windows(2).filter(|pair| pair[0] == "--format").map(|pair| pair[1].as_str());
-    inline.chain(apart).filter(|format| !format.contains('=')).last()
+    inline.chain(apart).rfind(|format| !format.contains('='))
 }
 
 /// Runs the program as a rank of another one, which hears of it if that fails.
