@@ -154,7 +154,7 @@ impl Motion {
             let mut frame = track.first;
             track.points.retain(|_| {
                 frame += 1;
-                !(frame - 1).is_multiple_of(2)
+                frame % 2 == 1
             });
             track.points.shrink_to_fit();
             track.first = track.first.div_ceil(2);
