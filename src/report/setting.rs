@@ -29,8 +29,8 @@ mod tests {
         assert_eq!(parts("true"), (None, "true"));
         let settings = [("n".to_owned(), "8".to_owned()), ("gap".to_owned(), "80 cm".to_owned())];
         assert_eq!(
-            object(&settings).to_string(),
-            r#"{"gap":{"unit":"cm","value":80},"n":{"unit":"","value":8}}"#
+            object(&settings),
+            json!({ "n": { "value": 8, "unit": "" }, "gap": { "value": 80, "unit": "cm" } })
         );
     }
 }
