@@ -1,9 +1,9 @@
 //! The command line as typed: data only.
 
 use super::advise::AdviseCommand;
+use super::destination::Destination;
 use super::gait::GaitCommand;
 use super::infer::InferCommand;
-use super::outputs::Destination;
 use super::path::PathCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
 use super::values::{
@@ -137,24 +137,6 @@ pub(super) struct Check {
     /// Show no progress and no forecast on standard error.
     #[arg(short, long)]
     pub(super) quiet: bool,
-}
-
-/// Formats of results.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum OutputFormat {
-    /// For people.
-    Text,
-    /// One line a query.
-    Brief,
-    /// A table: one row a result, an option of a ranking, a side of a comparison.
-    Csv,
-    /// One object; see docs/schema/verdict.schema.json.
-    Json,
-    /// For continuous integration: `JUnit` XML.
-    #[value(help = "For continuous integration: JUnit XML")]
-    Junit,
-    /// Annotations of GitHub workflows.
-    Github,
 }
 
 /// `smc simulate`

@@ -1,36 +1,10 @@
 //! Where the results of a call go, and in which formats: one to standard output, each of the others into a file.
 
-use super::arguments::OutputFormat;
+use super::destination::Destination;
 use super::{complaint, output};
 use crate::report::Format;
 use crate::syntax::diagnostic::Diagnostic;
-use clap::ValueEnum;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
-
-/// `json`, or `json=FILE`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Destination {
-    pub(super) format: OutputFormat,
-    pub(super) file: Option<PathBuf>,
-}
-
-impl FromStr for Destination {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (name, file) = text.split_once('=').map_or((text, None), |(name, file)| (name, Some(file)));
-        let format = OutputFormat::from_str(name, false).map_err(|_| {
-            let names = OutputFormat::value_variants().iter().filter_map(ValueEnum::to_possible_value);
-            let names: Vec<String> = names.map(|value| value.get_name().to_owned()).collect();
-            format!("the formats are {}; for a file write `json=FILE`", names.join(", "))
-        })?;
-        if file.is_some_and(str::is_empty) {
-            return Err(format!("the name of the file is missing: write `{name}=FILE`"));
-        }
-        Ok(Self { format, file: file.map(PathBuf::from) })
-    }
-}
 
 /// Format of what a call prints, and the files that it writes.
 #[derive(Clone, Debug)]
@@ -73,19 +47,5 @@ impl Outputs {
             output::guard(Some(file), inputs)?;
         }
         Ok(Self { screen, files, page: page.map(Path::to_owned) })
-    }
-}
-
-impl OutputFormat {
-    /// The format of the report.
-    pub(super) const fn of(self) -> Format {
-        match self {
-            Self::Text => Format::Text,
-            Self::Brief => Format::Brief,
-            Self::Json => Format::Json,
-            Self::Csv => Format::Csv,
-            Self::Junit => Format::Junit,
-            Self::Github => Format::Github,
-        }
     }
 }
