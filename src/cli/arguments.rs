@@ -9,8 +9,11 @@ use super::replay::{EvaluateCommand, MonitorCommand};
 use super::values::{
     Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
 };
+use super::simulate::{Keep, parse_trace_format};
 use super::walk::WalkCommand;
+use crate::data::table::{FORMATS, TraceFormat};
 use crate::data::tracks::Velocity;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -145,6 +148,9 @@ pub(super) struct Simulate {
     /// The model.
     #[command(flatten)]
     pub(super) model: Model,
+    /// Property files (`.bltl`) for `--keep`.
+    #[arg(requires = "keep")]
+    pub(super) properties: Vec<String>,
     /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
     /// set, as the tracks say, or else recorded.
     #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
@@ -167,10 +173,16 @@ pub(super) struct Simulate {
     /// Stop at this time instead of the horizon: `2.5s`; a number without a unit is in seconds.
     #[arg(long, value_name = "TIME", allow_negative_numbers = true, value_parser = parse_moment)]
     pub(super) until: Option<f64>,
-    /// Format of the table.
-    #[arg(long, value_enum, default_value_t = TableFormat::Csv)]
-    pub(super) format: TableFormat,
-    /// File to write; standard output by default.
+    /// Keep only the trials in which the formula of a check is false (`violated`) or true (`satisfied`). Of several checks
+    /// one is meant by the name of its property or its number: `violated=safe`.
+    #[arg(long, value_name = "WHICH[=NAME]", requires = "properties")]
+    pub(super) keep: Option<Keep>,
+    /// Format of the table: `csv`, `json`, `jsonl`, `pedpy`, `parquet` or `sqlite`. By default the ending of the file shows it
+    /// (PedPy: `.txt`), and standard output is `csv`.
+    #[arg(long, value_name = "FORMAT", value_parser = trace_formats())]
+    pub(super) format: Option<&'static TraceFormat>,
+    /// File to write; standard output by default. `{trial}` in the name stands for the number of the trial, so that each has
+    /// its own file.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// Write a self-contained HTML page that plays the trials; the table is then written only with `--output`.
@@ -178,15 +190,10 @@ pub(super) struct Simulate {
     pub(super) report: Option<PathBuf>,
 }
 
-/// Formats of traces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum TableFormat {
-    /// Comma-separated values.
-    Csv,
-    /// One object with columns and rows.
-    Json,
-    /// One object per line.
-    Jsonl,
+/// The names of the formats of traces, each with what it is.
+fn trace_formats() -> impl TypedValueParser<Value = &'static TraceFormat> {
+    let names = FORMATS.iter().map(|format| PossibleValue::new(format.name).help(format.meaning));
+    PossibleValuesParser::new(names).try_map(|name| parse_trace_format(&name))
 }
 
 /// `smc compare-walks`

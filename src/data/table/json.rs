@@ -1,120 +1,123 @@
 //! Traces as JSON: lines with one object each, or one object with columns and rows.
 //!
-//! What is absent, infinite or not a number is `null`, as JSON has no other word for it.
+//! What is missing or infinite is `null`, as JSON has no other word for it.
 
-use super::row::{COLUMNS, Row};
+use super::{Table, TraceFormat, Value, Writer};
 use std::io::{self, Write};
 
-/// Writes one object per row and line; returns the number of rows.
-///
-/// # Errors
-/// Errors of the writer, and a row whose signals do not match `signals`.
-pub fn write_json_lines<'a>(
-    mut out: impl Write,
-    signals: &[&str],
-    rows: impl IntoIterator<Item = Row<'a>>,
-) -> io::Result<u64> {
-    let mut keys = Vec::new();
-    for name in COLUMNS.iter().chain(signals) {
-        keys.push(serde_json::to_string(name)?);
+/// One object with columns, their units, and rows:
+/// `{"schema": 1, "scenario": …, "seed": …, "version": …, "columns": [...], "units": [...], "rows": [[...], ...]}`.
+pub(super) const OBJECT: TraceFormat = TraceFormat {
+    name: "json",
+    ending: "json",
+    meaning: "one JSON object with columns and rows",
+    is_of_one_trial: false,
+    open: Some(|out, table| Ok(Box::new(Object::new(out, table)?))),
+};
+
+/// One object a line.
+pub(super) const LINES: TraceFormat = TraceFormat {
+    name: "jsonl",
+    ending: "jsonl",
+    meaning: "JSON lines: one object a row",
+    is_of_one_trial: false,
+    open: Some(|out, table| Ok(Box::new(Lines::new(out, table)?))),
+};
+
+struct Object<W> {
+    out: W,
+    is_first: bool,
+}
+
+impl<W: Write> Object<W> {
+    fn new(mut out: W, table: &Table) -> io::Result<Self> {
+        let (scenario, version) =
+            (serde_json::to_string(&table.scenario)?, serde_json::to_string(&table.version)?);
+        let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        let units: Vec<&str> = table.columns.iter().map(super::Column::unit).collect();
+        let (names, units) = (serde_json::to_string(&names)?, serde_json::to_string(&units)?);
+        write!(out, "{{\"schema\":1,\"scenario\":{scenario},\"seed\":{},\"version\":{version},", table.seed)?;
+        write!(out, "\"columns\":{names},\"units\":{units},\"rows\":[")?;
+        Ok(Self { out, is_first: true })
     }
-    let mut count = 0;
-    for row in rows {
-        row.checked(signals)?;
-        for (k, value) in cells(&row)?.into_iter().enumerate() {
-            write!(out, "{}{}:{value}", if k == 0 { '{' } else { ',' }, keys[k])?;
+}
+
+impl<W: Write> Writer for Object<W> {
+    fn row(&mut self, row: &[Value<'_>]) -> io::Result<()> {
+        let cells = row.iter().map(cell).collect::<Result<Vec<_>, _>>()?;
+        let before = if std::mem::take(&mut self.is_first) { "\n" } else { ",\n" };
+        write!(self.out, "{before}[{}]", cells.join(","))
+    }
+
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
+        self.out.write_all(b"\n]}\n")?;
+        self.out.flush()
+    }
+}
+
+struct Lines<W> {
+    out: W,
+    keys: Vec<String>,
+}
+
+impl<W: Write> Lines<W> {
+    fn new(out: W, table: &Table) -> io::Result<Self> {
+        let keys = table.columns.iter().map(|column| serde_json::to_string(&column.name));
+        Ok(Self { out, keys: keys.collect::<Result<_, _>>()? })
+    }
+}
+
+impl<W: Write> Writer for Lines<W> {
+    fn row(&mut self, row: &[Value<'_>]) -> io::Result<()> {
+        for (k, (key, value)) in self.keys.iter().zip(row).enumerate() {
+            write!(self.out, "{}{key}:{}", if k == 0 { '{' } else { ',' }, cell(value)?)?;
         }
-        out.write_all(b"}\n")?;
-        count += 1;
+        self.out.write_all(b"}\n")
     }
-    out.flush()?;
-    Ok(count)
+
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
+        self.out.flush()
+    }
 }
 
-/// Writes one object, `{"schema": 1, "columns": [...], "rows": [[...], ...]}`, one row a line; returns the
-/// number of rows.
-///
-/// # Errors
-/// Errors of the writer, and a row whose signals do not match `signals`.
-pub fn write_json<'a>(
-    mut out: impl Write,
-    signals: &[&str],
-    rows: impl IntoIterator<Item = Row<'a>>,
-) -> io::Result<u64> {
-    let columns: Vec<&str> = COLUMNS.iter().chain(signals).copied().collect();
-    write!(out, "{{\"schema\":1,\"columns\":{},\"rows\":[", serde_json::to_string(&columns)?)?;
-    let mut count = 0;
-    for row in rows {
-        row.checked(signals)?;
-        write!(out, "{}[{}]", if count == 0 { "\n" } else { ",\n" }, cells(&row)?.join(","))?;
-        count += 1;
-    }
-    out.write_all(b"\n]}\n")?;
-    out.flush()?;
-    Ok(count)
-}
-
-fn cells(row: &Row<'_>) -> io::Result<Vec<String>> {
-    let mut cells = vec![number(Some(row.time)), row.trial.to_string(), serde_json::to_string(&row.agent)?];
-    cells.extend(row.motion().map(number));
-    cells.push(row.present.to_string());
-    cells.extend(row.signals.iter().map(|&value| number(Some(value))));
-    for word in &row.words {
-        cells.push(if word.is_empty() { "null".into() } else { serde_json::to_string(word)? });
-    }
-    Ok(cells)
-}
-
-fn number(value: Option<f64>) -> String {
-    match value {
-        Some(value) if value.is_finite() => value.to_string(),
-        _ => "null".into(),
-    }
+fn cell(value: &Value<'_>) -> serde_json::Result<String> {
+    Ok(match value {
+        Value::Number(number) if number.is_finite() => number.to_string(),
+        Value::Number(_) | Value::Missing => "null".to_owned(),
+        Value::Whole(whole) => whole.to_string(),
+        Value::Word(word) => serde_json::to_string(word)?,
+        Value::Truth(truth) => truth.to_string(),
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::row::samples;
+    use super::super::samples::{HOSTILE, rows, table, text};
     use super::*;
-    use serde_json::{Value, json};
+    use serde_json::{Value as Json, json};
 
     #[test]
     fn every_line_is_an_object() {
-        let mut out = Vec::new();
-        assert_eq!(write_json_lines(&mut out, &["gap"], samples::rows()).unwrap(), 2);
-        let lines: Vec<Value> = out
-            .split(|&b| b == b'\n')
-            .filter(|l| !l.is_empty())
-            .map(|l| serde_json::from_slice(l).unwrap())
-            .collect();
+        let text = text(&LINES, &table(), rows());
+        let lines: Vec<Json> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert_eq!(
             lines[0],
-            json!({"time": 0.02, "trial": 3, "agent": "oncoming[2]", "x": 1.5, "y": -0.25, "vx": 0.3, "vy": 0.4,
-                   "speed": 0.5, "present": true, "gap": null})
+            json!({"time": 0, "trial": 3, "agent": HOSTILE, "x": 1.5, "y": -0.25, "vx": 0.3, "vy": 0.4,
+                   "present": true, "gap": null, "n": -2, "phone": "idle"})
         );
-        assert_eq!(lines[1]["x"], Value::Null);
-        assert_eq!(lines[1]["agent"], "a, \"b\"");
+        assert_eq!((&lines[1]["x"], &lines[1]["phone"]), (&Json::Null, &Json::Null));
     }
 
     #[test]
-    fn words_come_after_signals() {
-        let mut row = samples::rows()[0].clone();
-        row.words = vec!["looking", ""];
-        let mut out = Vec::new();
-        write_json_lines(&mut out, &["gap", "phone", "pace"], [row]).unwrap();
-        let line: Value = serde_json::from_slice(&out).unwrap();
-        assert_eq!((&line["phone"], &line["pace"]), (&json!("looking"), &Value::Null));
-    }
-
-    #[test]
-    fn the_object_has_columns_and_rows() {
-        let mut out = Vec::new();
-        write_json(&mut out, &["gap"], samples::rows()).unwrap();
-        let table: Value = serde_json::from_slice(&out).unwrap();
-        assert_eq!(table["columns"][9], "gap");
-        assert_eq!(table["rows"][0], json!([0.02, 3, "oncoming[2]", 1.5, -0.25, 0.3, 0.4, 0.5, true, null]));
-        let mut empty = Vec::new();
-        write_json(&mut empty, &[], []).unwrap();
-        assert_eq!(serde_json::from_slice::<Value>(&empty).unwrap()["rows"], json!([]));
+    fn the_object_has_columns_with_units_and_rows() {
+        let object: Json = serde_json::from_str(&text(&OBJECT, &table(), rows())).unwrap();
+        assert_eq!((&object["columns"][3], &object["units"][3]), (&json!("x"), &json!("m")));
+        assert_eq!((&object["scenario"], &object["seed"]), (&json!(HOSTILE), &json!(7)));
+        assert_eq!(
+            object["rows"][0],
+            json!([0, 3, HOSTILE, 1.5, -0.25, 0.3, 0.4, true, null, -2, "idle"])
+        );
+        let empty: Json = serde_json::from_str(&text(&OBJECT, &table(), Vec::new())).unwrap();
+        assert_eq!(empty["rows"], json!([]));
     }
 }

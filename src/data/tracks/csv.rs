@@ -1,77 +1,101 @@
 //! Reader of tracks as comma-separated values.
 //!
-//! The header names the columns, in any order: `id,x,y` and either `time` in seconds or `frame`; `vx,vy` may follow,
-//! and other columns are ignored. Lengths are metres. A table with `frame` needs the frames per second.
+//! The header names the columns, in any order: `id` or `agent`, `x,y`, and either `time` in seconds or `frame`; `vx,vy` may
+//! follow, `trial` where a table has several, and `present`, which is 0 in rows of agents that are absent. Other columns are
+//! ignored. Lengths are metres. A table with `frame` needs the frames per second. `smc simulate` writes such tables.
 
+use super::cells::{cells, records};
 use super::line::{LineError, number, quoted, whole_fault};
 use super::recording::{Clock, Recording};
 use super::rows::{Row, people, usual_stride};
 use super::timed::{self, TimedRow};
+use super::traces::Traces;
 use crate::base::geometry::{Vec2, coordinate_fault};
+use std::borrow::Cow;
 
-/// Names of columns; `time` and `frame` exclude each other.
-const COLUMNS: [&str; 7] = ["time", "frame", "id", "x", "y", "vx", "vy"];
+/// Names of columns; `time` and `frame` exclude each other. The first are numbers.
+const COLUMNS: [&str; 10] = ["time", "frame", "id", "x", "y", "vx", "vy", "agent", "trial", "present"];
+const NUMBERS: usize = 7;
+const FRAME: usize = 1;
+const ID: usize = 2;
+const AGENT: usize = 7;
+const TRIAL: usize = 8;
+const PRESENT: usize = 9;
 
 /// Where the columns of a table stand, from 0.
-struct Header([Option<usize>; 7]);
+struct Header([Option<usize>; COLUMNS.len()]);
 
 impl Header {
-    fn read(line: &str) -> Result<Self, Vec<LineError>> {
-        let mut places = [None; 7];
+    fn read(line: usize, record: &str) -> Result<Self, Vec<LineError>> {
+        let mut places = [None; COLUMNS.len()];
         let mut errors = Vec::new();
-        for (k, (column, field)) in cells(line).enumerate() {
+        for (k, (column, field)) in cells(record).enumerate() {
             let Some(name) = COLUMNS.iter().position(|name| *name == field) else { continue };
             if places[name].replace(k).is_some() {
-                errors.push(LineError::at(1, column, format!("column {} is there twice", quoted(field))));
+                errors.push(LineError::at(line, column, format!("column {} is there twice", quoted(&field))));
             }
         }
-        let [time, frame, id, x, y, vx, vy] = places;
-        for (name, place) in [("id", id), ("x", x), ("y", y)] {
+        if places[ID].is_some() {
+            places[AGENT] = None;
+        }
+        let [time, frame, id, x, y, vx, vy, agent, ..] = places;
+        for (name, place) in [("id", id.or(agent)), ("x", x), ("y", y)] {
             if place.is_none() {
-                errors.push(LineError::whole(1, format!("the header has no column `{name}`")));
+                errors.push(LineError::whole(line, format!("the header has no column `{name}`")));
             }
         }
         if time.is_some() == frame.is_some() {
             let found = if time.is_some() { "both" } else { "neither" };
             let message = format!("the header must have `time` or `frame` (it has {found})");
-            errors.push(LineError::whole(1, message));
+            errors.push(LineError::whole(line, message));
         }
         if vx.is_some() != vy.is_some() {
-            errors.push(LineError::whole(1, "the header must have both `vx` and `vy` or neither"));
+            errors.push(LineError::whole(line, "the header must have both `vx` and `vy` or neither"));
         }
         if errors.is_empty() { Ok(Self(places)) } else { Err(errors) }
     }
 }
 
-/// Reads a whole table. A table with `time` keeps its times; one with `frame` begins at time 0. Empty lines are passed
-/// over.
+/// Reads a table, of several trials one. A table with `time` keeps its times; one with `frame` begins at time 0. Empty lines
+/// are passed over.
 ///
 /// # Errors
-/// A header without the columns, `frame` without `frames_per_second`, and every bad line: a field that is missing or
-/// not a finite number, an id or a frame that is not a whole number, a position too far from the origin, a person
-/// twice at one time, and time that runs backwards.
-pub fn read_csv(text: &str, frames_per_second: Option<f64>) -> Result<Recording, Vec<LineError>> {
+/// A header without the columns, `frame` without `frames_per_second`, several trials of which none is wanted, and every bad
+/// line: a field that is missing or not a finite number, an id or a frame that is not a whole number, a position too far from
+/// the origin, a person twice at one time, and time that runs backwards.
+pub fn read_csv(
+    text: &str,
+    frames_per_second: Option<f64>,
+    trial: Option<u64>,
+) -> Result<Recording, Vec<LineError>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = text.lines().enumerate();
-    let Some((_, first)) = lines.next() else {
+    let mut records = records(text);
+    let Some((line, first, _)) = records.next() else {
         return Err(vec![LineError::of_file("the file contains no observation")]);
     };
-    let header = Header::read(first)?;
-    let has_frames = header.0[1].is_some();
+    let header = Header::read(line, first)?;
+    let has_frames = header.0[FRAME].is_some();
     let rate = frames_per_second.filter(|rate| rate.is_finite() && *rate > 0.0);
     if has_frames && rate.is_none() {
         let found = frames_per_second.map_or_else(String::new, |rate| format!(" (got {rate})"));
         let message = format!("a table with frames needs a positive number of frames per second{found}");
-        return Err(vec![LineError::at(1, 1, message)]);
+        return Err(vec![LineError::at(line, 1, message)]);
     }
-    let mut errors = Vec::new();
-    let mut rows = Vec::with_capacity(text.len() / 32);
-    for (k, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        rows.extend(read_row(k + 1, line, &header, &mut errors));
+    let (mut errors, mut traces) = (Vec::new(), Traces::default());
+    for (line, record, ends) in records {
+        if ends {
+            read_row(line, record, &header, (&mut traces, &mut errors));
+        } else {
+            errors.push(LineError::whole(line, "a quoted cell does not end"));
+        }
     }
-    let Some(rate) = rate.filter(|_| has_frames) else { return timed::recording(&rows, errors) };
-    let framed = rows.iter().map(|row| {
-        let TimedRow { line, time, id, position, velocity } = *row;
+    let Some(rate) = rate.filter(|_| has_frames) else { return traces.recording(errors, trial) };
+    let rows = traces.of_trial(trial).unwrap_or_else(|error| {
+        errors.insert(0, error);
+        Vec::new()
+    });
+    let framed = rows.into_iter().map(|row| {
+        let TimedRow { line, time, id, position, velocity } = row;
         Row { line, frame: time as u32, id, position, velocity }
     });
     let people = people(framed.collect(), errors, |row| format!("in frame {}", row.frame))?;
@@ -80,48 +104,64 @@ pub fn read_csv(text: &str, frames_per_second: Option<f64>) -> Result<Recording,
 }
 
 /// One row; of a table with frames, its time is the frame.
-fn read_row(line: usize, text: &str, header: &Header, errors: &mut Vec<LineError>) -> Option<TimedRow> {
+fn read_row(
+    line: usize,
+    record: &str,
+    header: &Header,
+    (traces, errors): (&mut Traces, &mut Vec<LineError>),
+) {
     let before = errors.len();
-    let mut values = [0.0; 7];
-    let mut is_read = [false; 7];
-    for (k, (column, field)) in cells(text).enumerate() {
-        let Some(name) = header.0.iter().position(|place| *place == Some(k)) else { continue };
-        is_read[name] = true;
-        let is_whole = name == 1 || name == 2;
-        let fault = match number(field) {
-            Err(fault) => Some(fault),
-            Ok(value) => {
-                values[name] = value;
-                is_whole.then(|| whole_fault(value)).flatten()
-            }
-        };
-        if let Some(fault) = fault {
-            errors.push(LineError::at(line, column, format!("{} {} {fault}", COLUMNS[name], quoted(field))));
+    let mut found: [Option<(usize, Cow<'_, str>)>; COLUMNS.len()] = [const { None }; COLUMNS.len()];
+    for (k, cell) in cells(record).enumerate() {
+        if let Some(name) = header.0.iter().position(|place| *place == Some(k)) {
+            found[name] = Some(cell);
         }
     }
-    for (k, name) in COLUMNS.iter().enumerate() {
-        if header.0[k].is_some() && !is_read[k] {
-            errors.push(LineError::whole(line, format!("column `{name}` is missing")));
+    match &found[PRESENT] {
+        Some((_, cell)) if cell == "0" || cell == "false" => return,
+        Some((column, cell)) if cell != "1" && cell != "true" => {
+            errors.push(LineError::at(line, *column, format!("present {} is neither 0 nor 1", quoted(cell))));
+        }
+        _ => {}
+    }
+    let mut values = [0.0; NUMBERS];
+    let mut fault = |name: usize, (column, cell): &(usize, Cow<'_, str>), fault: &str| {
+        errors.push(LineError::at(line, *column, format!("{} {} {fault}", COLUMNS[name], quoted(cell))));
+    };
+    for (name, value) in values.iter_mut().enumerate() {
+        let Some(cell) = &found[name] else { continue };
+        match number(&cell.1) {
+            Err(said) => fault(name, cell, said),
+            Ok(number) => {
+                *value = number;
+                if let Some(said) = whole_fault(number).filter(|_| name == FRAME || name == ID) {
+                    fault(name, cell, said);
+                }
+            }
+        }
+    }
+    let trial = found[TRIAL].as_ref().and_then(|cell| {
+        let trial = cell.1.parse::<u64>().ok();
+        if trial.is_none() {
+            fault(TRIAL, cell, "is not a whole number");
+        }
+        trial
+    });
+    for (name, place) in header.0.iter().enumerate() {
+        if place.is_some() && found[name].is_none() {
+            errors.push(LineError::whole(line, format!("column `{}` is missing", COLUMNS[name])));
         }
     }
     let position = Vec2::new(values[3], values[4]);
     if let Some(fault) = coordinate_fault(position) {
         errors.push(LineError::whole(line, fault));
     }
-    let velocity = header.0[5].map(|_| Vec2::new(values[5], values[6]));
-    let time = if header.0[1].is_some() { values[1] } else { values[0] };
-    (errors.len() == before).then_some(TimedRow { line, time, id: values[2] as u32, position, velocity })
-}
-
-/// The cells of a line without blanks around them, each with the character (from 1) at which it begins.
-fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut column = 1;
-    line.split(',').map(move |cell| {
-        let blanks = cell.chars().take_while(|c| c.is_whitespace()).count();
-        let start = column + blanks;
-        column += cell.chars().count() + 1;
-        (start, cell.trim())
-    })
+    if errors.len() == before {
+        let velocity = header.0[5].map(|_| Vec2::new(values[5], values[6]));
+        let time = if header.0[FRAME].is_some() { values[1] } else { values[0] };
+        let id = found[AGENT].as_ref().map_or(values[ID] as u32, |(_, name)| traces.place(name));
+        traces.push(trial, TimedRow { line, time, id, position, velocity });
+    }
 }
 
 #[cfg(test)]
@@ -130,12 +170,12 @@ mod tests {
     use super::*;
 
     fn said(text: &str, rate: Option<f64>) -> Vec<String> {
-        read_csv(text, rate).unwrap_err().iter().map(ToString::to_string).collect()
+        read_csv(text, rate, None).unwrap_err().iter().map(ToString::to_string).collect()
     }
 
     #[test]
     fn times_stay_as_written_and_velocities_look_back() {
-        let recording = read_csv("time,id,x,y\n100.0,3,0,0\n100.5,3,1,0\n101,3,2,1\n", None).unwrap();
+        let recording = read_csv("time,id,x,y\n100.0,3,0,0\n100.5,3,1,0\n101,3,2,1\n", None, None).unwrap();
         assert_eq!(recording.velocity(), Velocity::Seen);
         assert_eq!(recording.presence(3), Some((100.0, 101.0)));
         assert!((recording.step() - 0.5).abs() < 1e-12);
@@ -148,7 +188,7 @@ mod tests {
     #[test]
     fn frames_need_their_rate_and_columns_have_any_order() {
         let text = " y , x,vy,vx,frame,id,extra\n2,1,0.5,0,30,7,a\n\n";
-        let recording = read_csv(text, Some(25.0)).unwrap();
+        let recording = read_csv(text, Some(25.0), None).unwrap();
         assert_eq!(recording.velocity(), Velocity::Recorded);
         let sample = recording.people()[0].samples[0];
         assert_eq!(
@@ -203,10 +243,30 @@ mod tests {
             ["line 11: person 2 is recorded every 0.1 s, most others every 0.4 s"]
         );
         let sparse = format!("{head}{}0,2,0,0\n0.4,2,0,0\n1.2,2,0,0\n2,2,0,0\n", rows(1, 0.4, 9));
-        assert!(read_csv(&sparse, None).is_ok());
+        assert!(read_csv(&sparse, None, None).is_ok());
         // A thirtieth of a second in milliseconds is 33 or 34 of them.
         let film: String = (0..60).map(|k| format!("{:.3},1,0,{k}\n", f64::from(k) / 30.0)).collect();
-        let recording = read_csv(&format!("{head}{film}"), None).unwrap();
+        let recording = read_csv(&format!("{head}{film}"), None, None).unwrap();
         assert_eq!(recording.stretches().len(), 1);
+    }
+
+    #[test]
+    fn traces_have_names_trials_and_rows_of_absent_agents() {
+        let text = "time,trial,agent,x,y,vx,vy,speed,present,n\n0,3,\"cm,\"\"\n\",1.5,2,0,1,1,1,5\n0,3,b,,,,,,0,\n\
+                    0.1,3,b,4,4,0,0,0,1,5\n0,4,b,9,9,0,0,0,1,5\n";
+        let recording = read_csv(text, None, Some(3)).unwrap();
+        assert_eq!(recording.ids().collect::<Vec<_>>(), [1, 2]);
+        let first = recording.at(0.0);
+        assert_eq!((first.len(), first[0].position), (1, Vec2::new(1.5, 2.0)));
+        assert_eq!(recording.velocity(), Velocity::Recorded);
+        assert_eq!(said(text, None), ["the table has the trials 3, 4: choose one with `trial`"]);
+        assert_eq!(
+            said("time,agent,x,y,trial,present\n0,a,0,0,-1,1\n0,a,0,0,1,2\n0,\"a,0,0,1,1\n", None),
+            [
+                "line 2, column 9: trial `-1` is not a whole number",
+                "line 3, column 11: present `2` is neither 0 nor 1",
+                "line 4: a quoted cell does not end",
+            ]
+        );
     }
 }

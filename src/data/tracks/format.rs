@@ -3,8 +3,10 @@
 use super::batch::Batch;
 use super::csv::read_csv;
 use super::eth_biwi::read_eth_biwi;
+use super::jsonl::read_json_lines;
 use super::line::LineError;
 use super::observations::{read_identified, read_observations};
+use super::parquet::read_parquet;
 use super::pedpy::read_pedpy;
 use super::recording::{Recording, Velocity};
 use super::trajnet::read_trajnet;
@@ -14,16 +16,27 @@ use super::trajnet::read_trajnet;
 pub struct Reading {
     /// Frames per second of a table with frames.
     pub frames_per_second: Option<f64>,
+    /// The trial of a table with several.
+    pub trial: Option<u64>,
 }
 
 type Read<T> = fn(&str, &Reading) -> Result<T, Vec<LineError>>;
+
+/// What reads a file.
+#[derive(Clone, Copy, Debug)]
+enum Reader {
+    Text(Read<Recording>),
+    Bytes(fn(&[u8], &Reading) -> Result<Recording, Vec<LineError>>),
+}
 
 /// A format of recordings.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
     /// Its name in scenarios and options.
     pub name: &'static str,
-    read: Read<Recording>,
+    read: Reader,
+    /// Whether its tables can have several trials.
+    has_trials: bool,
     /// Reads batches whose people need no ids; `None` where all people have one.
     read_batches: Option<Read<Vec<Batch>>>,
     /// Whether a file with this first line that is not empty has the format.
@@ -31,34 +44,56 @@ pub struct Format {
 }
 
 /// All formats, in the order in which the first line of a file is tried.
-static FORMATS: [Format; 5] = [
+static FORMATS: [Format; 7] = [
+    Format {
+        name: "parquet",
+        read: Reader::Bytes(|bytes, reading| read_parquet(bytes, reading.trial)),
+        has_trials: true,
+        read_batches: None,
+        begins: |line| line.starts_with("PAR1"),
+    },
+    Format {
+        name: "jsonl",
+        read: Reader::Text(|text, reading| read_json_lines(text, reading.trial)),
+        has_trials: true,
+        read_batches: None,
+        begins: |line| line.starts_with('{') && line.contains("\"agent\":"),
+    },
     Format {
         name: "eth_biwi",
-        read: |text, _| read_eth_biwi(text),
+        read: Reader::Text(|text, _| read_eth_biwi(text)),
+        has_trials: false,
         read_batches: None,
         begins: |line| line.split_whitespace().filter(|field| field.parse::<f64>().is_ok()).count() == 8,
     },
     Format {
         name: "trajnet",
-        read: |text, _| read_trajnet(text),
+        read: Reader::Text(|text, _| read_trajnet(text)),
+        has_trials: false,
         read_batches: None,
         begins: |line| line.starts_with('{') && (line.contains("\"scene\"") || line.contains("\"track\"")),
     },
     Format {
         name: "csv",
-        read: |text, reading| read_csv(text, reading.frames_per_second),
+        read: Reader::Text(|text, reading| read_csv(text, reading.frames_per_second, reading.trial)),
+        has_trials: true,
         read_batches: None,
-        begins: |line| line.split(',').any(|name| name.trim_start_matches('\u{feff}').trim() == "id"),
+        begins: |line| {
+            let mut names = line.split(',').map(|name| name.trim_start_matches('\u{feff}').trim());
+            names.any(|name| name == "id" || name == "agent")
+        },
     },
     Format {
         name: "pedpy",
-        read: |text, _| read_pedpy(text),
+        read: Reader::Text(|text, _| read_pedpy(text)),
+        has_trials: false,
         read_batches: None,
         begins: |line| line.starts_with('#') || (4..6).contains(&line.split_whitespace().count()),
     },
     Format {
         name: "observations",
-        read: |text, _| read_identified(text),
+        read: Reader::Text(|text, _| read_identified(text)),
+        has_trials: false,
         read_batches: Some(|text, _| read_observations(text)),
         begins: |line| line.starts_with('{') && line.contains("\"seen\""),
     },
@@ -75,8 +110,9 @@ impl Format {
         FORMATS.iter().find(|format| format.name == name)
     }
 
-    /// The format that the first line of a text shows.
-    pub fn of(text: &str) -> Option<&'static Self> {
+    /// The format that the first line of a file shows.
+    pub fn of(bytes: impl AsRef<[u8]>) -> Option<&'static Self> {
+        let text = String::from_utf8_lossy(bytes.as_ref());
         let line = text.lines().map(str::trim).find(|line| !line.is_empty())?;
         FORMATS.iter().find(|format| (format.begins)(line))
     }
@@ -84,30 +120,47 @@ impl Format {
     /// Reads a recording, in which everybody has an id.
     ///
     /// # Errors
-    /// All errors of the text, in the order of its lines.
-    pub fn read(&self, text: &str, reading: &Reading) -> Result<Recording, Vec<LineError>> {
-        (self.read)(text, reading)
+    /// All errors of the file, in the order of its lines.
+    pub fn read(&self, bytes: impl AsRef<[u8]>, reading: &Reading) -> Result<Recording, Vec<LineError>> {
+        self.check(reading)?;
+        match self.read {
+            Reader::Text(read) => read(text(bytes.as_ref())?, reading),
+            Reader::Bytes(read) => read(bytes.as_ref(), reading),
+        }
+    }
+
+    /// Whether the format has what is asked for.
+    fn check(&self, reading: &Reading) -> Result<(), Vec<LineError>> {
+        if self.has_trials || reading.trial.is_none() {
+            return Ok(());
+        }
+        Err(vec![LineError::of_file(format!("`{}` has no trials to choose from", self.name))])
     }
 
     /// Reads batches of observations, with the recorded velocities or none.
     ///
     /// # Errors
-    /// All errors of the text, in the order of its lines.
+    /// All errors of the file, in the order of its lines.
     pub fn read_batches(
         &self,
-        text: &str,
+        bytes: impl AsRef<[u8]>,
         reading: &Reading,
         velocity: Velocity,
     ) -> Result<Vec<Batch>, Vec<LineError>> {
         let Some(read) = self.read_batches else {
-            return Ok(self.read(text, reading)?.with(velocity).batches());
+            return Ok(self.read(bytes, reading)?.with(velocity).batches());
         };
-        let mut batches = read(text, reading)?;
+        self.check(reading)?;
+        let mut batches = read(text(bytes.as_ref())?, reading)?;
         if velocity == Velocity::Seen {
             batches.iter_mut().flat_map(|batch| &mut batch.seen).for_each(|one| one.velocity = None);
         }
         Ok(batches)
     }
+}
+
+fn text(bytes: &[u8]) -> Result<&str, Vec<LineError>> {
+    std::str::from_utf8(bytes).map_err(|_| vec![LineError::of_file("the file is not UTF-8 text")])
 }
 
 #[cfg(test)]
@@ -117,6 +170,7 @@ mod tests {
     #[test]
     fn the_first_line_shows_the_format() {
         let lines = [
+            ("jsonl", "{\"time\":0,\"trial\":0,\"agent\":\"1\",\"x\":0,\"y\":0,\"phone\":\"seen\"}"),
             ("eth_biwi", "\n 1.0e0 1 0 0 0 0 0 0\n"),
             ("trajnet", "{\"track\": {\"f\": 1, \"p\": 1, \"x\": 0, \"y\": 0}}\n{\"scene\": {\"fps\": 2}}"),
             ("csv", "\u{feff}time,id,x,y\n0,1,0,0\n"),
@@ -125,7 +179,7 @@ mod tests {
         ];
         assert_eq!(
             lines.map(|(name, _)| name).to_vec(),
-            Format::all().iter().map(|f| f.name).collect::<Vec<_>>()
+            Format::all().iter().map(|f| f.name).skip(1).collect::<Vec<_>>()
         );
         for (name, text) in lines {
             let format = Format::of(text).unwrap();

@@ -1,0 +1,158 @@
+//! `--keep`: only the trials in which the formula of a check is false, or true.
+
+use crate::cli::complaint;
+use crate::compile::Study;
+use crate::compile::nearest::nearest;
+use crate::compile::study::{Ask, MeasureKind, Query, Target};
+use crate::engine::cell::{Item, Reading};
+use crate::engine::executor::{Executor, Job};
+use crate::engine::{Budget, Fault, PreparedWorld, Threads};
+use crate::library;
+use crate::syntax::diagnostic::Diagnostic;
+use std::str::FromStr;
+
+/// Trials that are judged at one time.
+const ROUND: u64 = 4096;
+
+/// `violated`, `violated=NAME`, `satisfied`, `satisfied=NAME`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::cli) struct Keep {
+    /// Whether the formula is true in the trials that are kept.
+    truth: bool,
+    /// The check, by the name of its property or its number.
+    name: Option<String>,
+}
+
+impl FromStr for Keep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (word, name) = text.split_once('=').map_or((text, None), |(word, name)| (word, Some(name)));
+        let truth = match word {
+            "violated" => false,
+            "satisfied" => true,
+            _ => return Err("write `violated`, `satisfied`, or with a check `violated=NAME`".to_owned()),
+        };
+        if name.is_some_and(str::is_empty) {
+            return Err(format!("the name of the check is missing: write `{word}=NAME`"));
+        }
+        Ok(Self { truth, name: name.map(str::to_owned) })
+    }
+}
+
+/// How a message calls a query.
+fn label(query: &Query) -> String {
+    query.name.clone().unwrap_or_else(|| query.index.to_string())
+}
+
+impl Keep {
+    fn word(&self) -> &'static str {
+        if self.truth { "satisfied" } else { "violated" }
+    }
+
+    /// What the check observes in each trial.
+    ///
+    /// # Errors
+    /// Where no check `P(...)` has the name, several have it, or it is one of a sweep.
+    pub(super) fn target(&self, study: &Study) -> Result<Target, Diagnostic> {
+        let of = |query: &Query| match &query.ask {
+            Ask::Check { measure, .. } if measure.kind == MeasureKind::Probability => Some(measure.target),
+            _ => None,
+        };
+        let word = self.word();
+        let is_meant = |query: &&Query| {
+            self.name.as_ref().is_none_or(|name| {
+                query.name.as_ref() == Some(name) || name.parse::<usize>().ok() == Some(query.index)
+            })
+        };
+        let meant: Vec<&Query> = study.queries.iter().filter(is_meant).collect();
+        let checks: Vec<&Query> = meant.iter().copied().filter(|query| of(query).is_some()).collect();
+        let names = || {
+            let all = study.queries.iter().filter(|query| of(query).is_some());
+            let mut names: Vec<String> = all.map(label).collect();
+            names.dedup();
+            names
+        };
+        let known = || match names().as_slice() {
+            [] => "write a query such as `check P(safe) >= 0.9` into a property file".to_owned(),
+            names => format!("the checks of a probability are {}", names.join(", ")),
+        };
+        let Some(first) = checks.first() else {
+            let title = match (&self.name, meant.first()) {
+                (None, _) => format!("`--keep {word}` needs a check of a probability, and there is none"),
+                (Some(name), Some(_)) => {
+                    format!("`--keep {word}={name}`: query `{name}` is not a check of a probability")
+                }
+                (Some(name), None) => format!("`--keep {word}={name}`: no check is about `{name}`"),
+            };
+            let near = self.name.as_ref().filter(|_| meant.is_empty());
+            let near = near.and_then(|name| Some(nearest(name, names().iter().map(String::as_str))?.to_owned()));
+            return Err(complaint::argument(title, near.map_or_else(known, |near| format!("did you mean `{near}`?"))));
+        };
+        if checks.iter().any(|query| query.index == first.index && of(query) != of(first)) {
+            let title = format!("`--keep {word}`: the check has a result for each point of a sweep");
+            return Err(complaint::argument(title, "write `--set name=value`"));
+        }
+        if checks.iter().any(|query| of(query) != of(first)) {
+            let numbers: Vec<String> = checks.iter().map(|query| query.index.to_string()).collect();
+            let (title, list) = match &self.name {
+                Some(name) => (format!("several checks are about `{name}`"), numbers.join(", ")),
+                None => (format!("there are {} checks of a probability", checks.len()), names().join(", ")),
+            };
+            let hint = format!("write `--keep {word}=NAME` with one of {list}");
+            return Err(complaint::argument(title, hint));
+        }
+        of(first).ok_or_else(|| complaint::argument("there is no check", known()))
+    }
+
+    /// Judges trials, with an option of moves if one is followed: those that are kept, and how many are unresolved.
+    ///
+    /// # Errors
+    /// Where the formula cannot be watched.
+    pub(super) fn judge(
+        &self,
+        prepared: &PreparedWorld,
+        column: usize,
+        seed: u64,
+        mut items: impl Iterator<Item = Item>,
+    ) -> Result<(Vec<u64>, u64), Diagnostic> {
+        let wrong = |fault: Fault| library::refusal(&fault);
+        let threads = Threads::new(None).map_err(|error| wrong(Fault::Threads(error.to_string())))?;
+        let (job, budget) = (Job::new(prepared, vec![column], seed), Budget::new(u64::MAX, None));
+        let (mut kept, mut unresolved) = (Vec::new(), 0);
+        loop {
+            let round: Vec<Item> = items.by_ref().take(ROUND as usize).collect();
+            if round.is_empty() {
+                return Ok((kept, unresolved));
+            }
+            let cells = threads.run(&job, &round, &budget).map_err(|_| wrong(Fault::Unsuitable))?;
+            for (item, cells) in round.iter().zip(cells.rows()) {
+                match cells.and_then(|cells| cells.first()).map(|cell| cell.reading) {
+                    Some(Reading::Truth(truth)) if truth == self.truth => kept.push(item.index),
+                    Some(Reading::Truth(_)) => {}
+                    _ => unresolved += 1,
+                }
+            }
+        }
+    }
+
+    /// What was kept, in words.
+    pub(super) fn told(&self, trials: u64, kept: usize, unresolved: u64) -> String {
+        let word = self.word();
+        format!("kept {kept} of {trials} trials: {word} in {kept}, unresolved in {unresolved}\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_and_perhaps_a_name_are_read() {
+        let of = |text: &str| text.parse::<Keep>();
+        assert_eq!(of("violated"), Ok(Keep { truth: false, name: None }));
+        assert_eq!(of("satisfied=a=b"), Ok(Keep { truth: true, name: Some("a=b".to_owned()) }));
+        assert!(of("violated=").unwrap_err().contains("`violated=NAME`"));
+        assert!(of("broken").unwrap_err().contains("`satisfied`"));
+    }
+}

@@ -1,0 +1,207 @@
+//! `smc simulate`: traces of trials as tables.
+
+mod destination;
+mod keep;
+mod option;
+mod rows;
+
+pub(super) use destination::parse_trace_format;
+pub(super) use keep::Keep;
+
+use super::arguments::Simulate;
+use super::complaint;
+use super::inputs;
+use super::output;
+use super::page::{self, Trials};
+use super::terminal::{Colors, warn};
+use crate::base::random::MOST_TRIALS;
+use crate::base::tick::{Clock, Tick};
+use crate::compile::Study;
+use crate::data::table::{self, Table, TraceFormat};
+use crate::engine::cell::Item;
+use crate::engine::{PreparedWorld, placeable, smaller};
+use crate::gait;
+use crate::kernel::Program;
+use crate::library;
+use crate::model::Scenario;
+use crate::report::ExitCode as Exit;
+use crate::route::Ways;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Source;
+use destination::{Chosen, Destination};
+use option::option;
+use rows::Rows;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// Runs the command.
+pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
+    if let Err(error) = checked(arguments) {
+        complaint::tell(&error, &[], colors);
+        return Exit::Wrong;
+    }
+    let inputs::Loaded { mut inputs, paths, .. } = inputs::load(&arguments.model, &arguments.properties);
+    complaint::diagnose(&inputs, colors);
+    let Some(study) = inputs.study.take() else { return Exit::Wrong };
+    let destination =
+        Destination::new(arguments.format, arguments.output.as_deref(), arguments.report.as_deref(), &paths);
+    destination.and_then(|to| simulate(arguments, study, &to, &inputs.sources, colors)).unwrap_or_else(|error| {
+        complaint::tell(&error, &inputs.sources, colors);
+        Exit::Wrong
+    })
+}
+
+/// Whether the numbers of a call are possible.
+fn checked(arguments: &Simulate) -> Result<(), Diagnostic> {
+    if arguments.every == 0 || arguments.trials == 0 {
+        let option = if arguments.every == 0 { "--every" } else { "--trials" };
+        let title = format!("`{option}` must be positive (got 0)");
+        return Err(complaint::argument(title, "write a number from 1"));
+    }
+    if arguments.trial.saturating_add(arguments.trials) > MOST_TRIALS {
+        let hint = format!("trials are numbered from 0 to {}", MOST_TRIALS - 1);
+        return Err(complaint::argument("the trial number is out of range", hint));
+    }
+    Ok(())
+}
+
+/// The last tick that is written.
+fn last(scenario: &Scenario, until: Option<f64>) -> Result<Tick, Diagnostic> {
+    let Some(until) = until else { return Ok(scenario.horizon) };
+    if until.is_nan() || until < 0.0 {
+        let title = format!("`--until` must be a time that is not negative (got {until})");
+        return Err(complaint::argument(title, "write a number of seconds"));
+    }
+    let end = scenario.clock.seconds(scenario.horizon);
+    if until > end * (1.0 + 1e-12) {
+        let unit = if scenario.clock == Clock::Steps { "steps" } else { "s" };
+        let hint = format!("the horizon of the scenario is {end} {unit}");
+        return Err(complaint::argument(format!("`--until` must not exceed the horizon (got {until})"), hint));
+    }
+    // The longest time that is a whole number of ticks, in continuous time of very short ones.
+    Ok(scenario.horizon.min(Tick(match scenario.clock {
+        Clock::Jumps(tick) => (until / tick.to_f64()).floor() as u64,
+        // In spite of rounding, and never beyond what was asked for.
+        clock => (until / clock.step_seconds() * (1.0 + 1e-12)).floor() as u64,
+    })))
+}
+
+fn simulate(
+    arguments: &Simulate,
+    mut study: Study,
+    destination: &Destination,
+    sources: &[Source],
+    colors: Colors,
+) -> Result<Exit, Diagnostic> {
+    let target = arguments.keep.as_ref().map(|keep| keep.target(&study)).transpose()?;
+    if target.is_none() && study.worlds.len() > 2 {
+        return Err(complaint::argument("a trace cannot be written for a sweep", "write `--set name=value`"));
+    }
+    let number = target.map_or(study.worlds.len().saturating_sub(1), |target| target.world);
+    let Some(world) = study.worlds.get_mut(number) else { return Ok(Exit::Wrong) };
+    let ways = Ways::default();
+    if world.scenario.moves.iter().any(|moves| moves.paths.is_some()) {
+        library::find_paths(Arc::make_mut(&mut world.scenario), arguments.seed, &ways);
+    }
+    let scenario = world.scenario.clone();
+    let advice = arguments.advice.as_deref().map(|name| option(&scenario, name)).transpose()?;
+    placeable(world).map_err(|fault| library::refusal(&fault))?;
+    let last = last(&scenario, arguments.until)?;
+    let drivers = |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let all = arguments.trial..arguments.trial + arguments.trials;
+    let chosen = match (&arguments.keep, target) {
+        (Some(keep), Some(target)) => {
+            let Some(prepared) = PreparedWorld::of(&study, number, arguments.seed, &drivers) else {
+                return Ok(Exit::Wrong);
+            };
+            let items = all.map(|index| Item { advice, index });
+            let (kept, unresolved) = keep.judge(&prepared, target.column, arguments.seed, items)?;
+            warn(&keep.told(arguments.trials, kept.len(), unresolved));
+            Chosen::Kept(kept)
+        }
+        _ => Chosen::All(all),
+    };
+    let program = Program::driven(scenario.clone(), drivers(&scenario, arguments.seed));
+    let mut exit = Exit::Success;
+    if let Some(path) = &arguments.report {
+        let Simulate { seed, trial, trials: count, .. } = *arguments;
+        let option = arguments.advice.as_ref().map_or(String::new(), |name| format!(" --move '{name}'"));
+        let line = page::line(&arguments.model, arguments.velocity).simulate(&[], seed, trial);
+        let page = Trials {
+            program: &program,
+            scenario: &arguments.model.scenario,
+            sources,
+            seed,
+            list: &mut chosen.clone().trials().map(|index| (index, advice)),
+            last,
+            replay: format!("{line} -n {count}{option}"),
+        };
+        exit = page.write(path, colors);
+        if arguments.output.is_none() || exit != Exit::Success {
+            return Ok(exit);
+        }
+    }
+    let files = destination.files(&scenario, chosen)?;
+    let mut rows = Rows::new(&program, (arguments.seed, arguments.every), advice, last);
+    if arguments.output.is_some() {
+        // The file gets its name only when it is complete: the first signal ends the table, the second one the process.
+        let interrupted = Arc::clone(&rows.interrupted);
+        let _ = ctrlc::set_handler(move || {
+            if interrupted.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(Exit::Interrupted.code()));
+            }
+        });
+    }
+    let table = rows::table(&scenario, arguments.seed, arguments.every);
+    for part in files {
+        if rows.is_interrupted() {
+            break;
+        }
+        let written = part.and_then(|(file, chosen)| {
+            write(destination.format, file.as_deref(), &table, rows.of(chosen.trials()))
+        });
+        if let Err(error) = written {
+            complaint::tell(&error, &[], colors);
+            exit = Exit::Wrong;
+            break;
+        }
+    }
+    if let (trials, Some(first)) = rows.shrunk {
+        warn(&format!("warning: {}\n", smaller(&program, first, trials)));
+    }
+    for note in &rows.notes {
+        warn(&format!("warning: {note}\n"));
+    }
+    // As a check of the same trials would.
+    Ok(exit.worse(match &rows {
+        rows if rows.is_wrong => Exit::Wrong,
+        rows if rows.is_interrupted() => Exit::Interrupted,
+        _ => Exit::Success,
+    }))
+}
+
+/// Writes rows to a file as a whole or not at all, or to standard output.
+fn write(
+    format: &TraceFormat,
+    file: Option<&Path>,
+    table: &Table,
+    rows: &mut Rows<'_>,
+) -> Result<(), Diagnostic> {
+    let written = match file {
+        Some(path) => output::write(path, |out| table::write(format, out, table, rows)),
+        None => {
+            let mut out = BufWriter::new(std::io::stdout().lock());
+            table::write(format, &mut out, table, rows).and_then(|rows| out.flush().map(|()| rows))
+        }
+    };
+    match written {
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => Err(match file {
+            Some(path) => complaint::unwritten(path, &error),
+            None => complaint::output(error.to_string()),
+        }),
+    }
+}

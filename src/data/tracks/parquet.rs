@@ -1,0 +1,89 @@
+//! Reader of traces as Apache Parquet, as `smc simulate --format parquet` writes them: the columns of
+//! [`super::jsonl`], with `agent` as text. Errors count rows instead of lines.
+
+use super::line::LineError;
+use super::recording::Recording;
+
+/// Reads a trial of a whole file. Rows of agents that are absent are passed over.
+///
+/// # Errors
+/// The crate was built without the feature `parquet`.
+#[cfg(not(feature = "parquet"))]
+pub fn read_parquet(_: &[u8], _: Option<u64>) -> Result<Recording, Vec<LineError>> {
+    let message = "this program was built without the feature `parquet`: build it with `--features parquet`";
+    Err(vec![LineError::of_file(message)])
+}
+
+#[cfg(feature = "parquet")]
+pub use with_feature::read_parquet;
+
+#[cfg(feature = "parquet")]
+mod with_feature {
+    use super::{LineError, Recording};
+    use crate::base::geometry::{Vec2, coordinate_fault};
+    use crate::data::tracks::line::quoted;
+    use crate::data::tracks::timed::TimedRow;
+    use crate::data::tracks::traces::Traces;
+    use bytes::Bytes;
+    use parquet::errors::ParquetError;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::{Field, Row};
+
+    /// Reads a trial of a whole file. Rows of agents that are absent are passed over.
+    ///
+    /// # Errors
+    /// What is no Parquet file or has no such columns, and every bad row, as a table of comma-separated values.
+    pub fn read_parquet(bytes: &[u8], trial: Option<u64>) -> Result<Recording, Vec<LineError>> {
+        let damaged = |error: ParquetError| vec![LineError::of_file(format!("the file is damaged: {error}"))];
+        let reader = SerializedFileReader::new(Bytes::copy_from_slice(bytes)).map_err(damaged)?;
+        let schema = reader.metadata().file_metadata().schema_descr_ptr();
+        let missing = ["time", "agent", "x", "y"]
+            .into_iter()
+            .filter(|name| schema.columns().iter().all(|column| column.name() != *name))
+            .map(|name| LineError::of_file(format!("the table has no column `{name}`")));
+        let mut errors: Vec<LineError> = missing.collect();
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let mut traces = Traces::default();
+        for (k, row) in reader.get_row_iter(None).map_err(damaged)?.enumerate() {
+            let seen = row.map_err(|error| error.to_string()).and_then(|row| read_row(k + 1, &row, &mut traces));
+            if let Err(message) = seen {
+                errors.push(LineError::whole(k + 1, message));
+            }
+        }
+        traces.recording(errors, trial)
+    }
+
+    fn read_row(line: usize, row: &Row, traces: &mut Traces) -> Result<(), String> {
+        let field = |wanted: &str| row.get_column_iter().find(|(name, _)| *name == wanted).map(|(_, field)| field);
+        if field("present") == Some(&Field::Bool(false)) {
+            return Ok(());
+        }
+        let number = |name: &str| match field(name) {
+            Some(Field::Double(number)) if number.is_finite() => Ok(*number),
+            other => Err(format!("{name} must be a finite number (got {})", shown(other))),
+        };
+        let id = match field("agent") {
+            Some(Field::Str(name)) => traces.place(name),
+            other => return Err(format!("agent must be text (got {})", shown(other))),
+        };
+        let trial = match field("trial") {
+            None => None,
+            Some(Field::Long(trial)) if *trial >= 0 => Some(*trial as u64),
+            other => return Err(format!("trial must be a whole number (got {})", shown(other))),
+        };
+        let position = Vec2::new(number("x")?, number("y")?);
+        let has_velocity = field("vx").is_some() && field("vy").is_some();
+        let velocity = if has_velocity { Some(Vec2::new(number("vx")?, number("vy")?)) } else { None };
+        if let Some(fault) = coordinate_fault(position) {
+            return Err(fault);
+        }
+        traces.push(trial, TimedRow { line, time: number("time")?, id, position, velocity });
+        Ok(())
+    }
+
+    fn shown(field: Option<&Field>) -> String {
+        field.map_or_else(|| "nothing".to_owned(), |field| quoted(&field.to_string()))
+    }
+}
