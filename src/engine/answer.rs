@@ -61,6 +61,16 @@ pub(super) struct Answers<'a> {
 }
 
 impl Answers<'_> {
+    /// The budget that ends a query, and its share of it. Outcomes that are not there are missing for one query: it ends, and
+    /// the others go on.
+    pub(super) fn limits<'b>(
+        &'b self,
+        executor: &dyn Executor,
+        share: &'b Budget,
+    ) -> (&'b Budget, &'b Budget) {
+        (if executor.is_stored() { share } else { self.budget }, share)
+    }
+
     /// What is known of a query before its first trial.
     pub(super) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
@@ -150,7 +160,7 @@ impl Answers<'_> {
                     result.certificate = Some(between(&result, error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
-                if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
+                if fixed && result.estimate.is_some() && stop.is_early() {
                     result.warnings.push(
                         "the interval is for a number of trials fixed in advance, but sampling ended earlier"
                             .to_owned(),
@@ -216,6 +226,7 @@ impl Answers<'_> {
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
         let calls = (self.call, self.budget);
+        let picks = if self.call.explains { picks } else { &[] };
         witness::find(prepared, column, None, picks, calls, &result.asked.settings, &result.unit)
     }
 
@@ -327,7 +338,7 @@ impl Answers<'_> {
         };
         let worlds = [compare.prepared(0), compare.prepared(1)];
         let prepared = worlds[0];
-        let Some(gap) = compare.run(executor, (self.budget, share), watch)? else { return Ok(None) };
+        let Some(gap) = compare.run(executor, self.limits(executor, share), watch)? else { return Ok(None) };
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
         result.method = method::of(&query.ask, None);
@@ -384,7 +395,7 @@ impl Answers<'_> {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
-        let Some(ranked) = rank.run(executor, (self.budget, share), watch)? else { return Ok(None) };
+        let Some(ranked) = rank.run(executor, self.limits(executor, share), watch)? else { return Ok(None) };
         let setup = rank.setup();
         let mut result = self.blank(query, Kind::Rank);
         result.method = method::of(&query.ask, None);

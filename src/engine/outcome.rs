@@ -218,6 +218,8 @@ pub enum Stop {
     Deadline,
     /// Somebody interrupted it.
     Interrupt,
+    /// Outcomes of further trials were not there to be merged.
+    Missing,
 }
 
 impl Stop {
@@ -231,6 +233,13 @@ impl Stop {
             Self::Cap => "cap",
             Self::Deadline => "deadline",
             Self::Interrupt => "interrupt",
+            Self::Missing => "missing",
         }
+    }
+
+    /// Whether more time, or more outcomes, would have changed where it stopped: how many trials were read is then no
+    /// function of the query.
+    pub const fn is_early(self) -> bool {
+        matches!(self, Self::Deadline | Self::Interrupt | Self::Missing)
     }
 }

@@ -23,6 +23,8 @@ use std::sync::atomic::Ordering;
 
 /// Trials an option gets in a round: traces of crowds are slow.
 pub(super) const WORD: u64 = 32;
+/// First trials of an option that are requested where outcomes are stored.
+const AHEAD: u64 = 4 * WORD;
 
 /// The procedure of a ranking.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time")]
@@ -257,6 +259,21 @@ impl<'s> RankSampling<'s> {
         Ok(all)
     }
 
+    /// Requests the trials of a round, and those that most likely follow: of all options that are still open.
+    fn request(&self, round: &Round, executor: &dyn Executor, (left, most): (u64, u64)) {
+        let arms = self.setup.options.len();
+        let each = match self.setup.rule {
+            (epsilon, delta, Ranking::Okamoto) => stats::ranking::size(arms, epsilon / self.scale(), delta),
+            _ => 0,
+        };
+        for share in &round.shares {
+            let ahead = each.max(share.to).max(share.from + share.from / 5).max(AHEAD);
+            let ahead = ahead.min(most).min(share.from.saturating_add(left));
+            let advice = self.setup.options[share.arm].advice;
+            executor.request(&self.jobs[self.job_of[share.arm]], advice, share.from..ahead);
+        }
+    }
+
     /// Runs the first round, and forecasts from it what the ranking is likely to take.
     pub(super) fn run_pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
         let round = self.round(budget.max_trials);
@@ -339,6 +356,10 @@ impl<'s> RankSampling<'s> {
             };
             // What follows an unfinished trial is not looked at, so that their number says which they are.
             let prefix = (0..wanted).take_while(|place| rows.row(*place).is_some()).count();
+            if prefix < wanted && executor.is_stored() {
+                self.request(&round, executor, (left, budget.max_trials));
+                share.lack();
+            }
             if prefix < wanted && !budget.must_stop() {
                 // What a round had finished counts only where the call ends: else their number would not say which they are.
                 return Ok(None);

@@ -13,7 +13,6 @@ mod inputs;
 mod limits;
 mod outputs;
 mod paths;
-mod ranks;
 mod reasons;
 mod replay;
 mod traces;

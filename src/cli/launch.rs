@@ -1,0 +1,157 @@
+//! Launchers: how the shards of a round are started. Each is a line for the shell that returns when the shards are over; the
+//! queue that it talks to keeps order, repeats and accounts.
+
+use super::parts::PartsFolder;
+use super::{complaint, output};
+use crate::engine::shards::Plan;
+use crate::engine::{Budget, CommandLine, quoted};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+/// Between two looks at the folder.
+const LOOK: Duration = Duration::from_millis(20);
+/// Lines of the launcher that an error quotes.
+const QUOTED: usize = 5;
+
+/// The lines of the engines that are known by name.
+const ENGINES: [(&str, &str); 3] = [
+    ("local", "seq 0 {last} | xargs -n 1 -P {jobs} sh {shard}"),
+    ("hq", "hq submit --wait --array 0-{last} --stdout none --stderr none -- sh {shard}"),
+    ("slurm", "sbatch --wait --array=0-{last} --output={parts}/shards.log --open-mode=append {shard}"),
+];
+/// The engine whose job is printed.
+const KUBERNETES: &str = "k8s";
+
+/// How shards are started.
+pub(super) struct Launcher<'a> {
+    /// An engine, or a line of its own.
+    pub(super) engine: &'a str,
+    /// The call.
+    pub(super) line: CommandLine,
+    /// Shards that run side by side on this machine.
+    pub(super) jobs: usize,
+}
+
+/// Whether an engine runs on this machine alone.
+pub(super) fn is_local(engine: &str) -> bool {
+    engine == ENGINES[0].0
+}
+
+impl Launcher<'_> {
+    /// Writes the script of a shard: the index is its argument, or what the queue says.
+    fn script(&self, folder: &PartsFolder, program: &str) -> Result<PathBuf, Diagnostic> {
+        let file = folder.path().join("shard.sh");
+        let path = |path: &Path| quoted(&path.display().to_string());
+        let (plan, parts) = (path(&folder.plan_file()), path(folder.path()));
+        let call = self.line.shard();
+        let call = call.strip_prefix("smc ").unwrap_or(&call);
+        let script = format!(
+            "#!/bin/sh\n\
+             index=${{1:-${{HQ_TASK_ID:-${{SLURM_ARRAY_TASK_ID:-$JOB_COMPLETION_INDEX}}}}}}\n\
+             {} {call} --round {plan} --index \"$index\" -o {parts} || exit 1\n",
+            quoted(program)
+        );
+        output::write(&file, |out| out.write_all(script.as_bytes()))
+            .map_err(|error| complaint::unwritten(&file, &error))?;
+        Ok(file)
+    }
+
+    /// The job for Kubernetes, if it is asked for.
+    pub(super) fn manifest(&self, folder: &PartsFolder, plan: &Plan) -> Result<Option<String>, Diagnostic> {
+        if self.engine != KUBERNETES {
+            return Ok(None);
+        }
+        let script = self.script(folder, "smc")?;
+        let (round, count) = (plan.round, plan.shards.len());
+        Ok(Some(format!(
+            "apiVersion: batch/v1\nkind: Job\nmetadata:\n  name: smc-round-{round}\nspec:\n  completions: {count}\n  \
+             parallelism: {count}\n  completionMode: Indexed\n  backoffLimitPerIndex: 2\n  template:\n    spec:\n      \
+             restartPolicy: Never\n      containers:\n      - name: shard\n        image: smc\n        \
+             workingDir: /work\n        command: [sh, {:?}]\n        volumeMounts:\n        - name: work\n          \
+             mountPath: /work\n      volumes:\n      - name: work\n        persistentVolumeClaim:\n          \
+             claimName: work\n",
+            script.display().to_string()
+        )))
+    }
+
+    /// The line for the shell.
+    fn command(&self, folder: &PartsFolder, plan: &Plan, script: &Path) -> String {
+        let known = ENGINES.iter().find(|(name, _)| *name == self.engine);
+        let count = plan.shards.len();
+        let path = |path: &Path| quoted(&path.display().to_string());
+        known
+            .map_or(self.engine, |(_, line)| line)
+            .replace("{plan}", &path(&folder.plan_file()))
+            .replace("{parts}", &path(folder.path()))
+            .replace("{shard}", &path(script))
+            .replace("{count}", &count.to_string())
+            .replace("{last}", &(count - 1).to_string())
+            .replace("{jobs}", &self.jobs.to_string())
+    }
+
+    /// Starts the shards of a plan and waits until they are over, or the budget ends. `told` hears how many are done, and
+    /// at last that all are over.
+    pub(super) fn launch(
+        &self,
+        folder: &PartsFolder,
+        plan: &Plan,
+        budget: &Budget,
+        told: &dyn Fn(usize, bool),
+    ) -> Result<(), Diagnostic> {
+        let program =
+            std::env::current_exe().map_or_else(|_| "smc".to_owned(), |path| path.display().to_string());
+        let script = self.script(folder, &program)?;
+        let command = self.command(folder, plan, &script);
+        let log = folder.path().join("launcher.log");
+        let failed = |reason: String| {
+            let said = std::fs::read_to_string(&log).unwrap_or_default();
+            let lines: Vec<&str> = said.lines().collect();
+            let last = lines[lines.len().saturating_sub(QUOTED)..].join("; ");
+            let said = if last.is_empty() { last } else { format!(": {last}") };
+            Diagnostic::placeless(Code::E0725, format!("the launcher `{command}` {reason}{said}"))
+                .hint("see `smc explain E0725` for the launchers; parts that are there are used when you call again")
+        };
+        let unwritten = |error: std::io::Error| complaint::unwritten(&log, &error);
+        let out = File::create(&log).map_err(unwritten)?;
+        let err = out.try_clone().map_err(unwritten)?;
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &command]).stdin(Stdio::null()).stdout(out).stderr(err);
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut shell, 0);
+        let mut child = shell.spawn().map_err(|error| failed(format!("cannot be started: {error}")))?;
+        let done = || plan.shards.len() - folder.missing(plan).len();
+        let status = loop {
+            match child.try_wait() {
+                Ok(None) if budget.must_stop() => {
+                    end(&mut child);
+                    return Ok(());
+                }
+                Ok(None) => {}
+                Ok(Some(status)) => break status,
+                Err(error) => return Err(failed(format!("cannot be waited for: {error}"))),
+            }
+            told(done(), false);
+            std::thread::sleep(LOOK);
+        };
+        told(done(), true);
+        if !status.success() && done() == 0 {
+            return Err(failed(format!("failed ({status})")));
+        }
+        Ok(())
+    }
+}
+
+/// Ends a launcher and all that it has started on this machine.
+fn end(child: &mut Child) {
+    #[cfg(unix)]
+    let _ = Command::new("kill")
+        .args(["-TERM", "--", &format!("-{}", child.id())])
+        .stderr(Stdio::null())
+        .status();
+    let _ = child.kill();
+    let _ = child.wait();
+}

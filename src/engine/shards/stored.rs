@@ -1,0 +1,245 @@
+//! The executor that answers from parts. What is not there is requested, and becomes the plan of the next round.
+
+use super::part::{Body, Head, Part};
+use super::unit::{Trials, Unit};
+use crate::engine::budget::Budget;
+use crate::engine::cell::{Cell, Item};
+use crate::engine::executor::{Cells, Executor, Job, Threads};
+use crate::engine::splitting::{RunRecord, SplitRun};
+use crate::logic::Invalid;
+use std::collections::{BTreeMap, VecDeque};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Trials of all parts that are kept unpacked at a time, at least: parts are read again where they are needed again.
+const KEPT: u64 = 1 << 25;
+/// Trials that are asked for at a time, in units of lanes.
+const WIDTH: usize = 1 << 11;
+
+/// Two parts that say different things of the same trials: one of them is wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contradiction {
+    /// Their places among the parts.
+    pub parts: [usize; 2],
+    /// The trials.
+    pub unit: Unit,
+}
+
+/// A unit of trials in a part.
+struct Piece {
+    trials: Trials,
+    part: usize,
+    /// Its place in the part.
+    unit: usize,
+}
+
+/// Reads a part again, if it is still what it was.
+pub type Reread<'r> = &'r (dyn Fn(usize) -> Option<Part> + Sync);
+
+/// Parts that were read last, with their places.
+type Recent = VecDeque<(usize, Option<Arc<Part>>)>;
+
+/// Outcomes of parts.
+pub struct Stored<'r> {
+    threads: &'r Threads,
+    reread: Reread<'r>,
+    /// The units of trials of each world and option, by their first trials.
+    pieces: BTreeMap<(usize, Option<(usize, usize)>), Vec<Piece>>,
+    runs: Vec<(SplitRun, usize, usize)>,
+    recent: Mutex<Recent>,
+    wanted: Mutex<Vec<Unit>>,
+}
+
+impl<'r> Stored<'r> {
+    /// The outcomes of some parts, of which `heads` are known. Parts that contradict each other are left out.
+    pub fn new(heads: &[&Head], reread: Reread<'r>, threads: &'r Threads) -> (Self, Vec<Contradiction>) {
+        let mut stored = Self {
+            threads,
+            reread,
+            pieces: BTreeMap::new(),
+            runs: Vec::new(),
+            recent: Mutex::default(),
+            wanted: Mutex::default(),
+        };
+        for (part, head) in heads.iter().enumerate() {
+            for (at, unit) in head.units.iter().enumerate() {
+                match unit {
+                    Unit::Trials(trials) => {
+                        let piece = Piece { trials: trials.clone(), part, unit: at };
+                        stored.pieces.entry((trials.world, trials.advice)).or_default().push(piece);
+                    }
+                    Unit::Run(run) => stored.runs.push((run.clone(), part, at)),
+                }
+            }
+        }
+        for pieces in stored.pieces.values_mut() {
+            pieces.sort_by_key(|piece| (piece.trials.from, piece.part));
+        }
+        let found = stored.contradictions();
+        let is_wrong = |part: usize| found.iter().any(|one| one.parts.contains(&part));
+        stored.pieces.values_mut().for_each(|pieces| pieces.retain(|piece| !is_wrong(piece.part)));
+        stored.runs.retain(|(_, part, _)| !is_wrong(*part));
+        (stored, found)
+    }
+
+    /// What was requested, and is not there.
+    pub fn wanted(&self) -> Vec<Unit> {
+        self.wanted.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Compares all that two parts say of the same trials and runs.
+    fn contradictions(&self) -> Vec<Contradiction> {
+        let mut found = Vec::new();
+        for pieces in self.pieces.values() {
+            let mut furthest = 0;
+            for (k, piece) in pieces.iter().enumerate() {
+                let to = pieces[furthest].trials.to;
+                if k > 0 && piece.trials.from < to {
+                    found.extend(self.compare(&pieces[furthest], piece));
+                }
+                if piece.trials.to > to {
+                    furthest = k;
+                }
+            }
+        }
+        for (k, (run, part, unit)) in self.runs.iter().enumerate() {
+            for (_, other, at) in self.runs[..k].iter().filter(|(other, ..)| other == run) {
+                let body = |part: usize, unit: usize| Some(self.part(part)?.bodies[unit].clone());
+                if body(*part, *unit) != body(*other, *at) {
+                    found.push(Contradiction { parts: [*other, *part], unit: Unit::Run(run.clone()) });
+                }
+            }
+        }
+        found
+    }
+
+    fn compare(&self, one: &Piece, other: &Piece) -> Option<Contradiction> {
+        let (a, b) = (self.part(one.part)?, self.part(other.part)?);
+        let (Body::Trials(first), Body::Trials(second)) = (&a.bodies[one.unit], &b.bodies[other.unit]) else {
+            return None;
+        };
+        let both = other.trials.from..other.trials.to.min(one.trials.to);
+        let differs = |index: &u64| {
+            one.trials.columns.iter().enumerate().any(|(k, column)| {
+                let at = other.trials.columns.iter().position(|known| known == column);
+                at.is_some_and(|at| {
+                    first.numbers((index - one.trials.from) as usize, k)
+                        != second.numbers((index - other.trials.from) as usize, at)
+                })
+            })
+        };
+        let from = both.clone().find(differs)?;
+        let unit = Unit::Trials(Trials { from, to: both.end, ..other.trials.clone() });
+        Some(Contradiction { parts: [one.part, other.part], unit })
+    }
+
+    /// A part, which is kept for a while.
+    fn part(&self, place: usize) -> Option<Arc<Part>> {
+        let mut recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(at) = recent.iter().position(|(known, _)| *known == place) {
+            let entry = recent.remove(at)?;
+            recent.push_front(entry.clone());
+            return entry.1;
+        }
+        let part = (self.reread)(place).map(Arc::new);
+        recent.push_front((place, part.clone()));
+        let weight = |part: &Option<Arc<Part>>| {
+            part.iter().flat_map(|part| &part.head.units).map(Unit::weight).sum::<u64>()
+        };
+        let mut all = 0;
+        let kept = recent.iter().take_while(|(_, part)| {
+            all += weight(part);
+            all <= KEPT || part.is_none()
+        });
+        let kept = kept.count().max(1);
+        recent.truncate(kept);
+        part
+    }
+
+    /// The piece that has a trial and all of some columns.
+    fn piece(&self, job: &Job<'_>, item: Item) -> Option<&Piece> {
+        let pieces = self.pieces.get(&(job.prepared.number?, item.advice))?;
+        let before = pieces.partition_point(|piece| piece.trials.from <= item.index);
+        pieces[..before].iter().rev().find(|piece| {
+            item.index < piece.trials.to && job.columns.iter().all(|one| piece.trials.columns.contains(one))
+        })
+    }
+}
+
+impl Executor for Stored<'_> {
+    fn run(&self, job: &Job<'_>, items: &[Item], _: &Budget) -> Result<Cells, Invalid> {
+        let mut cells = job.cells(items.len(), false);
+        let mut row: Vec<Cell> = Vec::with_capacity(job.columns.len());
+        let mut open: Option<(&Piece, Vec<usize>, Arc<Part>)> = None;
+        // Outcomes are read in the order of their trials: what follows one that is not there is of no use yet.
+        for (place, item) in items.iter().enumerate() {
+            let has = |piece: &Piece| {
+                item.advice == piece.trials.advice
+                    && (piece.trials.from..piece.trials.to).contains(&item.index)
+            };
+            if !open.as_ref().is_some_and(|(piece, ..)| has(piece)) {
+                open = self.piece(job, *item).and_then(|piece| {
+                    let at = |one: &usize| piece.trials.columns.iter().position(|known| known == one);
+                    Some((piece, job.columns.iter().filter_map(at).collect(), self.part(piece.part)?))
+                });
+            }
+            let Some((piece, columns, part)) = &open else { break };
+            let Body::Trials(table) = &part.bodies[piece.unit] else { break };
+            let trial = (item.index - piece.trials.from) as usize;
+            row.clear();
+            row.extend(columns.iter().map(|column| table.cell(trial, *column)));
+            cells.put(place, &row);
+        }
+        Ok(cells)
+    }
+
+    fn width(&self, _: &Job<'_>) -> usize {
+        WIDTH
+    }
+
+    fn everywhere(&self, work: &(dyn Fn() + Sync)) {
+        self.threads.everywhere(work);
+    }
+
+    fn is_stored(&self) -> bool {
+        true
+    }
+
+    fn request(&self, job: &Job<'_>, advice: Option<(usize, usize)>, trials: Range<u64>) -> bool {
+        let Some(world) = job.prepared.number else { return false };
+        let mut wanted = self.wanted.lock().unwrap_or_else(PoisonError::into_inner);
+        let (mut index, mut is_lacking) = (trials.start, false);
+        while index < trials.end {
+            if let Some(piece) = self.piece(job, Item { advice, index })
+                && self.part(piece.part).is_some()
+            {
+                index = piece.trials.to;
+                continue;
+            }
+            // Up to where another part begins.
+            let later = self.pieces.get(&(world, advice)).into_iter().flatten();
+            let later = later.map(|piece| piece.trials.from).filter(|from| *from > index).min();
+            let to = later.unwrap_or(u64::MAX).min(trials.end);
+            let unit = Unit::Trials(Trials { world, columns: job.columns.clone(), advice, from: index, to });
+            if !wanted.iter().any(|known| unit.is_within(known)) {
+                wanted.push(unit);
+            }
+            is_lacking |= index == trials.start;
+            index = to;
+        }
+        is_lacking
+    }
+
+    fn record(&self, run: &SplitRun) -> Option<Option<RunRecord>> {
+        let mut known = self.runs.iter().filter(|(known, ..)| known == run);
+        let record = known.find_map(|(_, part, unit)| match &self.part(*part)?.bodies[*unit] {
+            Body::Run(record) => Some(record.clone()),
+            Body::Trials(_) => None,
+        });
+        if record.is_none() {
+            let mut wanted = self.wanted.lock().unwrap_or_else(PoisonError::into_inner);
+            wanted.push(Unit::Run(run.clone()));
+        }
+        record
+    }
+}

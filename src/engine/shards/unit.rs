@@ -1,0 +1,69 @@
+//! Units of work: trials in a row of one table, or a run of splitting.
+
+use crate::engine::splitting::SplitRun;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Trials in a row, of one world and perhaps one option in it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trials {
+    /// Number of the world.
+    pub world: usize,
+    /// The columns that are observed.
+    pub columns: Vec<usize>,
+    /// Number of the moves and of their option, if one is followed.
+    pub advice: Option<(usize, usize)>,
+    /// Index of the first trial.
+    pub from: u64,
+    /// One past the last.
+    pub to: u64,
+}
+
+/// What a shard consists of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Unit {
+    /// Trials in a row.
+    Trials(Trials),
+    /// A run of splitting.
+    Run(SplitRun),
+}
+
+impl Unit {
+    /// How many trials it is worth, roughly.
+    pub fn weight(&self) -> u64 {
+        match self {
+            Self::Trials(trials) => trials.to.saturating_sub(trials.from),
+            // Each of a few levels replaces some of the paths.
+            Self::Run(run) => run.replicas.saturating_mul(4),
+        }
+    }
+
+    /// Whether another one does all of this, or this is a piece of it.
+    pub(super) fn is_within(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Trials(one), Self::Trials(other)) => {
+                one.is_beside(other) && other.from <= one.from && one.to <= other.to
+            }
+            _ => self == other,
+        }
+    }
+}
+
+impl Trials {
+    /// Whether both are of one table.
+    pub(super) fn is_beside(&self, other: &Self) -> bool {
+        (self.world, self.advice) == (other.world, other.advice)
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Trials(Trials { world, advice, from, to, .. }) => {
+                write!(f, "trials {from} to {} of world {world}", to.saturating_sub(1))?;
+                advice.map_or(Ok(()), |(_, option)| write!(f, ", option {option}"))
+            }
+            Self::Run(run) => write!(f, "run {} of splitting in world {}", run.branch, run.world),
+        }
+    }
+}

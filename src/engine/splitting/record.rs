@@ -1,0 +1,67 @@
+//! A run of splitting as a unit of work, and what is kept of it. A run is a function of the model, the seed and these
+//! numbers, so it can be made anywhere; what it consumed is kept generation by generation, because runs go on side by side
+//! and `--max-trials` may end them between two generations.
+
+use crate::stats::Invalid;
+use crate::stats::splitting::{Adaptive, Effort, Scheme};
+use serde::{Deserialize, Serialize};
+
+/// A run of splitting.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SplitRun {
+    /// Number of the world.
+    pub world: usize,
+    /// Column of the formula, and of the robustness that is its level.
+    pub columns: [usize; 2],
+    /// Whether levels are found on the way.
+    pub adaptive: bool,
+    /// Paths of the run.
+    pub replicas: u64,
+    /// Paths given up at each level, at least.
+    pub kill: u64,
+    /// Number of runs of the query; the run after the last one finds levels for the others.
+    pub runs: u64,
+    /// Number of this run, from 1.
+    pub branch: u16,
+    /// Whether lost paths are read as reaching the event.
+    pub lost_reaches: bool,
+    /// Levels that are known beforehand.
+    pub levels: Vec<f64>,
+}
+
+/// What a run consumed between two looks at its levels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Generation {
+    /// Paths.
+    pub paths: u64,
+    /// Steps of them.
+    pub steps: u64,
+    /// Paths that diverged.
+    pub lost: u64,
+}
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunRecord {
+    /// What it consumed. Where `--max-trials` ended it, the last entry is the generation that was not run.
+    pub generations: Vec<Generation>,
+    /// Its estimate.
+    pub estimate: f64,
+    /// Its levels.
+    pub levels: Vec<f64>,
+}
+
+impl SplitRun {
+    /// How it finds and uses its levels.
+    pub(super) fn scheme(&self, seed: u64) -> Result<Box<dyn Scheme>, Invalid> {
+        let replicas = self.replicas as usize;
+        Ok(if self.adaptive {
+            Box::new(Adaptive::new(replicas, self.kill as usize, seed, self.branch)?)
+        } else if u64::from(self.branch) > self.runs {
+            // A pilot run finds the levels; its own estimate is not used.
+            Box::new(Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, self.branch)?)
+        } else {
+            Box::new(Effort::new(replicas, self.levels.clone(), seed, self.branch)?)
+        })
+    }
+}
