@@ -5,7 +5,7 @@ use smc::compile::{Files, Input, Study, compile};
 use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
 use smc::engine::outcome::{CallResult, Failure, QueryResult};
-use smc::engine::{Budget, Call, CommandLine, Executor, Fault, Nobody, Threads, run};
+use smc::engine::{Budget, Call, CommandLine, Executor, Nobody, Threads, run};
 use smc::logic::Invalid;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};

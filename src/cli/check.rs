@@ -3,9 +3,9 @@
 use super::arguments::{Check, Questions};
 use super::deadline::{Deadline, Ended, Phase};
 use super::launch::{self, Launcher};
-use super::merge::{self, Rounds};
+use super::merge::Rounds;
 use super::outputs::Outputs;
-use super::parts::{self, PartsFolder};
+use super::parts::PartsFolder;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
 use super::{complaint, inputs, output, page};
@@ -25,7 +25,7 @@ use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Most shards of a round, unless set, where they run elsewhere.
@@ -119,10 +119,11 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     }
     let progress = Progress::new(arguments.quiet, deadline);
     let result = if let Way::Check(Check { launch: None, .. }) = way {
-        run_study(study, &call(), &executor, &budget, &progress).map_err(merge::Ended::Fault)
+        let run = run_study(study, &call(), &executor, &budget, &progress);
+        run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
         let default = if launch.is_some_and(launch::is_local) { threads } else { SHARDS };
-        let mut warn = |warning| reporter.warn(&[warning]);
+        let mut warn = |warnings: &[Diagnostic]| reporter.warn(warnings);
         let mut rounds = Rounds {
             study,
             call: call(),
@@ -134,50 +135,36 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
             warn: &mut warn,
         };
         let launcher = launch.map(|engine| Launcher { engine, line: line(arguments), jobs: threads });
-        Folder::of(way).and_then(|folder| rounds.run(&mut PartsFolder::new(&folder.path), launcher.as_ref()))
+        folder(way).and_then(|mut folder| rounds.run(&mut folder, launcher.as_ref()))
     };
     match result {
-        Ok(run) => {
+        Ok(Some(run)) => {
             let room = report::html::MOST_NUMBERS;
             let shown = reporter.outputs.page.is_some().then(|| traces(study, &run, &call(), &budget, room));
             reporter.finish(run, shown.unwrap_or_default())
         }
-        Err(merge::Ended::Fault(fault)) => reporter.fault(&fault),
-        Err(merge::Ended::Refused(error)) => reporter.refuse(error),
-        Err(merge::Ended::Printed) => Exit::Success,
+        Ok(None) => Exit::Success,
+        Err(errors) => reporter.refuse_for(&errors),
     }
 }
 
-/// The folder of the parts of a call; it is removed at the end if no one named it.
-struct Folder {
-    path: PathBuf,
-    is_named: bool,
-}
-
-impl Folder {
-    fn of(way: &Way<'_>) -> Result<Self, merge::Ended> {
-        let named = match way {
-            Way::Merge(folder) if folder.is_dir() => Some(folder.to_path_buf()),
-            Way::Merge(folder) => {
-                let title = format!("the folder `{}` does not exist", folder.display());
-                return Err(merge::Ended::Refused(complaint::input(title)));
-            }
-            Way::Check(check) => check.parts.clone(),
-        };
-        let is_named = named.is_some();
-        // Other machines find it where they find the model.
-        let path = named.unwrap_or_else(|| format!(".smc-parts-{}", std::process::id()).into());
-        parts::make(&path).map_err(merge::Ended::Refused)?;
-        Ok(Self { path, is_named })
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        if !self.is_named {
-            let _ = std::fs::remove_dir_all(&self.path);
+/// The folder of the parts of a call.
+fn folder(way: &Way<'_>) -> Result<PartsFolder, Vec<Diagnostic>> {
+    let named = match way {
+        Way::Merge(folder) if !folder.is_dir() => {
+            return Err(vec![complaint::input(format!("the folder `{}` does not exist", folder.display()))]);
         }
-    }
+        Way::Merge(folder) => Some(folder.to_path_buf()),
+        // What is printed for Kubernetes is run later.
+        Way::Check(Check { launch: Some(engine), parts: None, .. }) if engine == "k8s" => {
+            Some("parts".into())
+        }
+        Way::Check(check) => check.parts.clone(),
+    };
+    let is_kept = named.is_some();
+    // Other machines find it where they find the model.
+    let path = named.unwrap_or_else(|| format!(".smc-parts-{}", std::process::id()).into());
+    PartsFolder::new(path, is_kept).map_err(|error| vec![error])
 }
 
 fn cores() -> usize {

@@ -23,8 +23,8 @@ const ENGINES: [(&str, &str); 3] = [
     ("hq", "hq submit --wait --array 0-{last} --stdout none --stderr none -- sh {shard}"),
     ("slurm", "sbatch --wait --array=0-{last} --output={parts}/shards.log --open-mode=append {shard}"),
 ];
-/// The engine whose job is printed.
-const KUBERNETES: &str = "k8s";
+/// The job for Kubernetes.
+const MANIFEST: &str = include_str!("../../templates/shards.yaml");
 
 /// How shards are started.
 pub(super) struct Launcher<'a> {
@@ -62,50 +62,37 @@ impl Launcher<'_> {
 
     /// The job for Kubernetes, if it is asked for.
     pub(super) fn manifest(&self, folder: &PartsFolder, plan: &Plan) -> Result<Option<String>, Diagnostic> {
-        if self.engine != KUBERNETES {
-            return Ok(None);
-        }
-        let script = self.script(folder, "smc")?;
-        let (round, count) = (plan.round, plan.shards.len());
-        Ok(Some(format!(
-            "apiVersion: batch/v1\nkind: Job\nmetadata:\n  name: smc-round-{round}\nspec:\n  completions: {count}\n  \
-             parallelism: {count}\n  completionMode: Indexed\n  backoffLimitPerIndex: 2\n  template:\n    spec:\n      \
-             restartPolicy: Never\n      containers:\n      - name: shard\n        image: smc\n        \
-             workingDir: /work\n        command: [sh, {:?}]\n        volumeMounts:\n        - name: work\n          \
-             mountPath: /work\n      volumes:\n      - name: work\n        persistentVolumeClaim:\n          \
-             claimName: work\n",
-            script.display().to_string()
-        )))
+        let script = || self.script(folder, "smc");
+        (self.engine == "k8s").then(|| Ok(self.fill(MANIFEST, folder, plan, &script()?))).transpose()
     }
 
-    /// The line for the shell.
-    fn command(&self, folder: &PartsFolder, plan: &Plan, script: &Path) -> String {
-        let known = ENGINES.iter().find(|(name, _)| *name == self.engine);
+    /// A line or a manifest with its names replaced.
+    fn fill(&self, text: &str, folder: &PartsFolder, plan: &Plan, script: &Path) -> String {
         let count = plan.shards.len();
         let path = |path: &Path| quoted(&path.display().to_string());
-        known
-            .map_or(self.engine, |(_, line)| line)
-            .replace("{plan}", &path(&folder.plan_file()))
+        text.replace("{plan}", &path(&folder.plan_file()))
             .replace("{parts}", &path(folder.path()))
             .replace("{shard}", &path(script))
+            .replace("{round}", &plan.round.to_string())
             .replace("{count}", &count.to_string())
             .replace("{last}", &(count - 1).to_string())
             .replace("{jobs}", &self.jobs.to_string())
     }
 
-    /// Starts the shards of a plan and waits until they are over, or the budget ends. `told` hears how many are done, and
-    /// at last that all are over.
+    /// Starts the shards of a plan and waits until they are over, or the budget ends. `told` hears how many are done.
     pub(super) fn launch(
         &self,
         folder: &PartsFolder,
         plan: &Plan,
         budget: &Budget,
-        told: &dyn Fn(usize, bool),
+        told: &dyn Fn(usize),
     ) -> Result<(), Diagnostic> {
         let program =
             std::env::current_exe().map_or_else(|_| "smc".to_owned(), |path| path.display().to_string());
         let script = self.script(folder, &program)?;
-        let command = self.command(folder, plan, &script);
+        let line =
+            ENGINES.iter().find(|(name, _)| *name == self.engine).map_or(self.engine, |(_, line)| line);
+        let command = self.fill(line, folder, plan, &script);
         let log = folder.path().join("launcher.log");
         let failed = |reason: String| {
             let said = std::fs::read_to_string(&log).unwrap_or_default();
@@ -134,10 +121,9 @@ impl Launcher<'_> {
                 Ok(Some(status)) => break status,
                 Err(error) => return Err(failed(format!("cannot be waited for: {error}"))),
             }
-            told(done(), false);
+            told(done());
             std::thread::sleep(LOOK);
         };
-        told(done(), true);
         if !status.success() && done() == 0 {
             return Err(failed(format!("failed ({status})")));
         }

@@ -8,18 +8,10 @@ use super::terminal::print;
 use crate::compile::Study;
 use crate::engine::outcome::{CallResult, Stop};
 use crate::engine::shards::{Attempts, Origin, Plan, Stored, Unit};
-use crate::engine::{Budget, Call, Fault, Threads, Watch, run as run_study};
+use crate::engine::{Budget, Call, Threads, run as run_study};
+use crate::library;
+use crate::report::number::brief;
 use crate::syntax::diagnostic::Diagnostic;
-
-/// Why there are no results.
-pub(super) enum Ended {
-    /// Nothing could be run.
-    Fault(Fault),
-    /// Files, or the launcher, are wrong.
-    Refused(Diagnostic),
-    /// What is to be run next was printed instead.
-    Printed,
-}
 
 /// A call whose trials run elsewhere.
 pub(super) struct Rounds<'a> {
@@ -32,118 +24,85 @@ pub(super) struct Rounds<'a> {
     /// Most shards of a round.
     pub(super) shards: usize,
     pub(super) progress: &'a Progress,
-    /// Reports a warning.
-    pub(super) warn: &'a mut dyn FnMut(Diagnostic),
-}
-
-/// Hears only that sampling begins: one run is read several times.
-struct Hushed<'p>(&'p Progress);
-
-impl Watch for Hushed<'_> {
-    fn samples(&self) {
-        self.0.samples();
-    }
+    /// Reports warnings.
+    pub(super) warn: &'a mut dyn FnMut(&[Diagnostic]),
 }
 
 impl Rounds<'_> {
-    /// Merges what is there, and writes the plan of what is lacking; with a launcher, until nothing is.
+    /// Merges what is there, and writes the plan of what is lacking; with a launcher, until nothing is. No results where a
+    /// launcher prints what is to be done instead.
     pub(super) fn run(
         &mut self,
         folder: &mut PartsFolder,
         launcher: Option<&Launcher<'_>>,
-    ) -> Result<CallResult, Ended> {
+    ) -> Result<Option<CallResult>, Vec<Diagnostic>> {
+        let one = |error| vec![error];
         let mut attempts = Attempts::default();
         loop {
-            let before = folder.plan(&self.origin).map_err(Ended::Refused)?;
-            let warnings = folder.scan(&self.origin, before.as_ref()).map_err(Ended::Refused)?;
-            warnings.into_iter().for_each(&mut *self.warn);
+            let before = folder.plan(&self.origin).map_err(one)?;
+            (self.warn)(&folder.scan(&self.origin, before.as_ref()).map_err(one)?);
             self.call.explains = launcher.is_none();
-            let (run, wanted) = self.read(folder, Stop::Missing, true)?;
+            let (run, wanted) = self.read(folder)?;
             let shards = Plan::deal(&wanted, &attempts, self.shards, folder.pace());
-            let Some(launcher) = launcher else {
-                let missing = before.as_ref().filter(|_| !wanted.is_empty()).map(|plan| folder.missing(plan));
-                missing.and_then(|missing| parts::lost(&missing)).into_iter().for_each(&mut *self.warn);
-                self.plan(folder, before.as_ref(), shards)?;
-                return Ok(run);
-            };
-            if shards.is_empty() || self.budget.must_stop() {
-                return self.finish(folder, &attempts);
+            if launcher.is_some() && (shards.is_empty() || self.budget.must_stop()) {
+                return self.finish(folder, &attempts).map(Some);
             }
-            let plan = self.plan(folder, before.as_ref(), shards)?.ok_or(Ended::Fault(Fault::Unsuitable))?;
-            if let Some(manifest) = launcher.manifest(folder, &plan).map_err(Ended::Refused)? {
+            if shards.is_empty() {
+                return Ok(Some(run));
+            }
+            let lacking = before.as_ref().map_or_else(Vec::new, |plan| folder.missing(plan));
+            let (round, max_trials) = (folder.next_round(before.as_ref()), self.budget.max_trials);
+            let plan = Plan { origin: self.origin.clone(), round, max_trials, shards };
+            folder.write_plan(&plan).map_err(one)?;
+            let Some(launcher) = launcher else {
+                (self.warn)(&parts::lost(&lacking));
+                return Ok(Some(run));
+            };
+            if let Some(manifest) = launcher.manifest(folder, &plan).map_err(one)? {
                 let _ = print(&manifest);
-                return Err(Ended::Printed);
+                return Ok(None);
             }
             let known = run.results.iter().find(|result| result.stopped_by.is_early());
-            let known = known.and_then(|result| Some((result.asked.text.as_str(), result.estimate?)));
-            let told = |done: usize, over: bool| {
-                let open = plan.shards.len() - done;
-                let (running, failed) = if over { (0, open) } else { (open, 0) };
-                self.progress.shards(
-                    (plan.round, done, plan.shards.len()),
-                    (running, failed + attempts.count()),
-                    known,
-                );
+            let known = known.map_or(String::new(), |one| {
+                one.estimate.map_or(String::new(), |x| format!(" · {} so far: {}", one.asked.text, brief(x)))
+            });
+            let (count, failed) = (plan.shards.len(), attempts.0.len());
+            let told = |done: usize| {
+                let open = count - done;
+                self.progress.shards(&format!("round {round}: {done} of {count} shards done, {open} running or waiting, {failed} failed{known}"));
             };
-            launcher.launch(folder, &plan, self.budget, &told).map_err(Ended::Refused)?;
+            launcher.launch(folder, &plan, self.budget, &told).map_err(one)?;
             if !self.budget.must_stop() {
                 let missing = folder.missing(&plan);
-                parts::lost(&missing).into_iter().for_each(&mut *self.warn);
+                (self.warn)(&parts::lost(&missing));
                 missing.into_iter().for_each(|units| attempts.fail(units));
             }
         }
     }
 
     /// The results of what is there, with witnesses.
-    fn finish(&mut self, folder: &PartsFolder, attempts: &Attempts) -> Result<CallResult, Ended> {
-        let absent = match (self.budget.is_interrupted(), self.budget.is_over()) {
-            (true, _) => Stop::Interrupt,
-            (false, true) => Stop::Deadline,
-            (false, false) => Stop::Missing,
-        };
+    fn finish(&mut self, folder: &PartsFolder, attempts: &Attempts) -> Result<CallResult, Vec<Diagnostic>> {
         self.call.explains = true;
-        let (mut run, _) = self.read(folder, absent, false)?;
-        run.interrupted = self.budget.is_interrupted();
-        run.elapsed_s = self.budget.elapsed();
-        let given_up: Vec<Unit> = attempts.given_up().cloned().collect();
-        if !given_up.is_empty() {
-            run.warnings.push(format!("no shard brought these back: {}", parts::words(&given_up)));
+        let (mut run, _) = self.read(folder)?;
+        (run.interrupted, run.elapsed_s) = (self.budget.is_interrupted(), self.budget.elapsed());
+        if self.budget.must_stop() {
+            let early = run.results.iter_mut().filter(|result| result.stopped_by == Stop::Missing);
+            early.for_each(|result| result.stopped_by = self.budget.stopped_by());
+        } else if let given_up @ [_, ..] = attempts.given_up().as_slice() {
+            run.warnings.push(format!("no shard brought these back: {}", parts::words(given_up)));
         }
         Ok(run)
     }
 
-    /// Reads all parts; what it lacks.
-    fn read(
-        &mut self,
-        folder: &PartsFolder,
-        absent: Stop,
-        warns: bool,
-    ) -> Result<(CallResult, Vec<Unit>), Ended> {
+    /// Reads all parts; what is lacking.
+    fn read(&mut self, folder: &PartsFolder) -> Result<(CallResult, Vec<Unit>), Vec<Diagnostic>> {
         let heads = folder.heads();
         let reread = |part| folder.reread(part);
-        let (stored, contradictions) = Stored::new(&heads, &reread, self.threads);
-        for one in contradictions.iter().filter(|_| warns) {
-            let [first, second] = one.parts.map(|part| folder.file(part));
-            (self.warn)(parts::contradiction(first, second, &one.unit));
-        }
+        let stored = Stored::new(&heads, &reread, self.threads);
+        let stored = stored.map_err(|(parts, unit)| vec![folder.contradiction(parts, &unit)])?;
         let mut budget = Budget::new(self.budget.max_trials, None);
-        (budget.max_total, budget.absent) = (self.budget.max_total, absent);
-        let run = run_study(self.study, &self.call, &stored, &budget, &Hushed(self.progress));
-        Ok((run.map_err(Ended::Fault)?, stored.wanted()))
-    }
-
-    fn plan(
-        &self,
-        folder: &PartsFolder,
-        before: Option<&Plan>,
-        shards: Vec<Vec<Unit>>,
-    ) -> Result<Option<Plan>, Ended> {
-        if shards.is_empty() {
-            return Ok(None);
-        }
-        let (round, max_trials) = (folder.next_round(before), self.budget.max_trials);
-        let plan = Plan { origin: self.origin.clone(), round, max_trials, shards };
-        folder.write_plan(&plan).map_err(Ended::Refused)?;
-        Ok(Some(plan))
+        budget.max_total = self.budget.max_total;
+        let run = run_study(self.study, &self.call, &stored, &budget, self.progress);
+        Ok((run.map_err(|fault| library::refusals(&fault))?, stored.wanted()))
     }
 }

@@ -5,7 +5,7 @@ use crate::engine::shards::{Head, Origin, Part, Plan, Unit};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeSet;
-use std::io::{Error, ErrorKind};
+use std::io::Error;
 use std::path::{Path, PathBuf};
 
 /// Parts that are named one by one in a warning.
@@ -14,6 +14,7 @@ const NAMED: usize = 8;
 /// What was read of a folder so far.
 pub(super) struct PartsFolder {
     path: PathBuf,
+    is_kept: bool,
     /// The parts of this call, in the order in which they were found.
     parts: Vec<(PathBuf, Head)>,
     /// All files that were looked at.
@@ -51,6 +52,13 @@ fn warning(title: String) -> Diagnostic {
     Diagnostic { severity: Severity::Warning, ..warning }
 }
 
+/// Makes a folder, and those that it is in.
+pub(super) fn make(path: &Path) -> Result<(), Diagnostic> {
+    let unmade =
+        |error| super::complaint::output(format!("the folder `{}` cannot be made: {error}", path.display()));
+    std::fs::create_dir_all(path).map_err(unmade)
+}
+
 /// Units in words.
 pub(super) fn words(units: &[Unit]) -> String {
     let mut words: Vec<String> = units.iter().take(NAMED).map(ToString::to_string).collect();
@@ -61,9 +69,10 @@ pub(super) fn words(units: &[Unit]) -> String {
 }
 
 impl PartsFolder {
-    /// A folder that exists.
-    pub(super) fn new(path: &Path) -> Self {
-        Self { path: path.to_path_buf(), parts: Vec::new(), seen: BTreeSet::new() }
+    /// A folder, which is made where it does not exist, and removed at the end unless it is kept.
+    pub(super) fn new(path: PathBuf, is_kept: bool) -> Result<Self, Diagnostic> {
+        make(&path)?;
+        Ok(Self { path, is_kept, parts: Vec::new(), seen: BTreeSet::new() })
     }
 
     /// Where it is.
@@ -137,9 +146,11 @@ impl PartsFolder {
         self.parts.iter().map(|(_, head)| head).collect()
     }
 
-    /// The file of a part.
-    pub(super) fn file(&self, part: usize) -> &Path {
-        &self.parts[part].0
+    /// An error about two parts that say different things.
+    pub(super) fn contradiction(&self, parts: [usize; 2], unit: &Unit) -> Diagnostic {
+        let [first, second] = parts.map(|part| self.parts[part].0.display());
+        let title = format!("`{first}` and `{second}` have different outcomes of {unit}");
+        Diagnostic::placeless(Code::E0724, title).hint("remove both: their trials are then run again")
     }
 
     /// Reads a part again; none if it has changed since.
@@ -171,30 +182,17 @@ impl PartsFolder {
     }
 }
 
-/// A warning about shards that brought nothing back.
-pub(super) fn lost(shards: &[&[Unit]]) -> Option<Diagnostic> {
-    let units: Vec<Unit> = shards.iter().flat_map(|units| units.iter().cloned()).collect();
-    let count = match shards.len() {
-        0 => return None,
-        1 => "1 part is".to_owned(),
-        count => format!("{count} parts are"),
-    };
-    Some(warning(format!("{count} missing: {}", words(&units))))
+/// A warning about shards that brought nothing back, if any.
+pub(super) fn lost(shards: &[&[Unit]]) -> Vec<Diagnostic> {
+    let units: Vec<Unit> = shards.concat();
+    let title = || format!("parts are missing: {} ({})", shards.len(), words(&units));
+    (!shards.is_empty()).then(|| warning(title())).into_iter().collect()
 }
 
-/// A warning about two parts that say different things.
-pub(super) fn contradiction(first: &Path, second: &Path, unit: &Unit) -> Diagnostic {
-    let (first, second) = (first.display(), second.display());
-    warning(format!("`{first}` and `{second}` are not used: they have different outcomes of {unit}"))
-}
-
-/// Makes a folder, and those that it is in.
-pub(super) fn make(path: &Path) -> Result<(), Diagnostic> {
-    match std::fs::create_dir_all(path) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            Err(super::complaint::output(format!("the folder `{}` cannot be made: {error}", path.display())))
+impl Drop for PartsFolder {
+    fn drop(&mut self) {
+        if !self.is_kept {
+            let _ = std::fs::remove_dir_all(&self.path);
         }
-        _ if path.is_dir() => Ok(()),
-        _ => Err(super::complaint::output(format!("`{}` is not a folder", path.display()))),
     }
 }

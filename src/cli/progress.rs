@@ -32,21 +32,13 @@ impl Progress {
 }
 
 impl Progress {
-    /// Shows how far a round of shards is: its number, shards that are done and all of them, those that run and that failed,
-    /// and the estimate so far.
-    pub(super) fn shards(
-        &self,
-        (round, done, of): (u64, usize, usize),
-        (running, failed): (usize, usize),
-        known: Option<(&str, f64)>,
-    ) {
+    /// Shows how far a round of shards is.
+    pub(super) fn shards(&self, message: &str) {
         let Some(bar) = &self.bar else { return };
-        let known = known.map_or(String::new(), |(query, estimate)| {
-            format!(" · {} so far: {}", visible(query), report::number::brief(estimate))
-        });
-        bar.set_message(format!(
-            "round {round}: {done} of {of} shards done, {running} running or waiting, {failed} failed{known}"
-        ));
+        if bar.is_finished() {
+            bar.reset();
+        }
+        bar.set_message(visible(message).into_owned());
         bar.tick();
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
     let mut inputs = inputs::load(&arguments.model, &arguments.properties).inputs;
     complaint::diagnose(&inputs, colors);
     let Some(mut study) = inputs.study.take() else { return Exit::Wrong };
-    let work = || -> Result<Exit, Vec<Diagnostic>> {
+    let mut work = || -> Result<Exit, Vec<Diagnostic>> {
         let one = |error: Diagnostic| vec![error];
         let refusals = |fault: Fault| library::refusals(&fault);
         let plan = read_plan(&arguments.round).map_err(one)?;
@@ -51,7 +51,6 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
             .map_err(|error| one(complaint::unwritten(&file, &error)))?;
         Ok(Exit::Success)
     };
-    let mut work = work;
     work().unwrap_or_else(|errors| {
         complaint::tell_all(&errors, &inputs.sources, colors);
         Exit::Wrong

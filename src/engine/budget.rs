@@ -29,8 +29,6 @@ pub struct Budget {
     pub max_trials: u64,
     /// Most trials of a ranking, over all options: where a deadline found it, a replay finds it again.
     pub max_total: Option<u64>,
-    /// What it means that outcomes which are read from files are not all there.
-    pub absent: Stop,
     /// Whether outcomes are not all there.
     lacks: AtomicBool,
     deadline: Option<Instant>,
@@ -53,7 +51,6 @@ impl Budget {
         Self {
             max_trials,
             max_total: None,
-            absent: Stop::Missing,
             lacks: AtomicBool::new(false),
             deadline: timeout.and_then(|t| started.checked_add(t)),
             started,
@@ -85,7 +82,6 @@ impl Budget {
         Self {
             max_trials: self.max_trials,
             max_total: self.max_total,
-            absent: self.absent,
             lacks: AtomicBool::new(false),
             deadline,
             started: self.started,
@@ -131,20 +127,16 @@ impl Budget {
         self.lacks.store(true, Ordering::Relaxed);
     }
 
-    fn lacks(&self) -> bool {
-        self.lacks.load(Ordering::Relaxed)
-    }
-
     /// Whether no more should be started, for any of these reasons.
     pub fn must_stop(&self) -> bool {
-        self.is_interrupted() || self.lacks() || self.is_over()
+        self.is_interrupted() || self.lacks.load(Ordering::Relaxed) || self.is_over()
     }
 
     /// Why no more is started, once none should be.
-    pub(super) fn stopped_by(&self) -> Stop {
-        match (self.is_interrupted(), self.lacks()) {
+    pub fn stopped_by(&self) -> Stop {
+        match (self.is_interrupted(), self.lacks.load(Ordering::Relaxed)) {
             (true, _) => Stop::Interrupt,
-            (false, true) => self.absent,
+            (false, true) => Stop::Missing,
             (false, false) => Stop::Deadline,
         }
     }

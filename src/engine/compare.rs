@@ -121,20 +121,8 @@ impl<'s> CompareSampling<'s> {
         };
         let jobs = [0, 1].map(|side| Job::new(sides.worlds[side], vec![sides.columns[side]], seed));
         let tallies = Default::default();
-        let statistics = PilotStatistics::default();
-        Ok(Self {
-            query,
-            jobs,
-            procedure,
-            range,
-            within,
-            delta,
-            ahead: None,
-            tallies,
-            means,
-            statistics,
-            spent: 0.0,
-        })
+        let (statistics, ahead, spent) = Default::default();
+        Ok(Self { query, jobs, procedure, range, within, delta, ahead, tallies, means, statistics, spent })
     }
 
     /// The query.
@@ -191,16 +179,6 @@ impl<'s> CompareSampling<'s> {
         }
     }
 
-    /// Up to which pair it will most likely read.
-    fn foreseen(&self) -> u64 {
-        let likely = self.likely(&self.statistics);
-        if self.within.is_none() {
-            likely.most
-        } else {
-            forecast::ahead(self.tallies[0].counts.trials, Some(likely))
-        }
-    }
-
     /// What a cell counts for: 0 or 1, or the clipped value.
     fn score(&self, cell: &Cell) -> Option<f64> {
         match self.range {
@@ -249,7 +227,8 @@ impl<'s> CompareSampling<'s> {
             for (item, pair) in items.iter().zip(first.rows().zip(second.rows())) {
                 let (Some(a), Some(b)) = pair else {
                     if executor.is_stored() {
-                        let ahead = self.foreseen().min(most);
+                        let likely = self.likely(&self.statistics);
+                        let ahead = forecast::ahead(item.index, Some(likely)).min(most);
                         for job in &self.jobs {
                             executor.request(job, None, item.index..ahead);
                         }

@@ -323,14 +323,12 @@ impl<'q> EstimateSampling<'q> {
 
     /// Up to which trial somebody will most likely read.
     fn foreseen(&self, budget: &Budget) -> u64 {
-        let open = self.entries.iter().filter(|entry| entry.is_open());
         let of = |entry: &EstimateEntry<'_>| {
             let likely = forecast::entry(&entry.query.ask, &entry.procedure, &entry.statistics);
-            let surely = entry.procedure.limit().filter(|_| entry.procedure.is_planned());
-            let most = entry.procedure.limit().unwrap_or(u64::MAX).min(budget.max_trials);
-            surely.unwrap_or_else(|| forecast::ahead(self.next, likely)).min(most)
+            forecast::ahead(self.next, likely).min(entry.procedure.limit().unwrap_or(u64::MAX))
         };
-        open.map(of).max().unwrap_or(0)
+        let open = self.entries.iter().filter(|entry| entry.is_open());
+        open.map(of).max().unwrap_or(0).min(budget.max_trials)
     }
 
     /// The columns that hold the others up: in which no trial of a round was decided in its time, or trials take much longer.

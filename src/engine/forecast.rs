@@ -141,10 +141,11 @@ pub(super) fn entry(ask: &Ask, procedure: &Procedure, statistics: &PilotStatisti
 /// First trials of a query that are requested from elsewhere.
 const FIRST: u64 = 256;
 
-/// Up to which trial outcomes are requested from elsewhere, where so many are read: as many as the fewest that are likely to
-/// be needed, and at least a fifth more, so that of what comes less than a quarter is in vain.
+/// Up to which trial outcomes are requested from elsewhere, where so many are read: as many as will surely be needed, or as the
+/// fewest that are likely to be, and at least a fifth more, so that of what comes less than a quarter is in vain.
 pub(super) fn ahead(read: u64, likely: Option<Likely>) -> u64 {
-    (read + read / 5).max(likely.map_or(0, |likely| if read < FIRST { 0 } else { likely.least })).max(FIRST)
+    let known = likely.filter(|likely| read >= FIRST || likely.least == likely.most);
+    (read + read / 5).max(known.map_or(FIRST, |likely| likely.least))
 }
 
 /// What the truth may be, of a query that is not known yet.

@@ -15,6 +15,7 @@ mod outputs;
 mod paths;
 mod reasons;
 mod replay;
+mod shards;
 mod traces;
 mod walk;
 mod walks;

@@ -16,7 +16,7 @@ mod unit;
 pub use part::{Body, Damaged, Head, Part};
 pub use plan::{Attempts, Plan};
 pub use shard::run;
-pub use stored::{Contradiction, Reread, Stored};
+pub use stored::{Reread, Stored};
 pub use table::Table;
 pub use unit::{Trials, Unit};
 
@@ -43,24 +43,14 @@ pub struct Origin {
 impl Origin {
     /// Of trials of a study. Of many worlds some stand for all.
     pub fn of(study: &Study, seed: u64) -> Self {
-        struct Ink(Fingerprint);
-        impl std::fmt::Write for Ink {
-            fn write_str(&mut self, text: &str) -> std::fmt::Result {
-                self.0.add(text.as_bytes());
-                Ok(())
-            }
-        }
-        let mut ink = Ink(Fingerprint::default());
+        let mut print = Fingerprint::default();
         let every = study.worlds.len().div_ceil(PRINTED).max(1);
         for world in study.worlds.iter().step_by(every) {
             let (tree, columns) = (&world.tree, &world.columns);
-            // Writing to a fingerprint does not fail.
-            let _ = std::fmt::write(
-                &mut ink,
-                format_args!("{:?}{:?}{:?}{tree:?}{columns:?}", world.scenario, world.atoms, world.signals),
-            );
+            let text = format!("{:?}{:?}{:?}{tree:?}{columns:?}", world.scenario, world.atoms, world.signals);
+            print.add(text.as_bytes());
         }
-        let print = format!("{} worlds, {}", study.worlds.len(), ink.0);
+        let print = format!("{} worlds, {print}", study.worlds.len());
         Self { version: env!("CARGO_PKG_VERSION").to_owned(), print, seed }
     }
 

@@ -44,17 +44,12 @@ pub struct Part {
 
 /// Why bytes are no part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum Damaged {
-    /// The first line is another one.
-    #[error("it is not a part, or is one of another format")]
-    Format,
-    /// The checksum does not match.
-    #[error("it is cut short or changed: its checksum does not match")]
-    Checksum,
-    /// The checksum matches what no shard writes.
-    #[error("its contents do not fit together")]
-    Contents,
-}
+#[error("{0}")]
+pub struct Damaged(&'static str);
+
+const FOREIGN: Damaged = Damaged("it is not a part, or is one of another format");
+const CHANGED: Damaged = Damaged("it is cut short or changed: its checksum does not match");
+pub(super) const UNFIT: Damaged = Damaged("its contents do not fit together");
 
 impl Part {
     /// The bytes of its file.
@@ -73,18 +68,18 @@ impl Part {
     /// Reads a part.
     pub fn read(bytes: &[u8]) -> Result<Self, Damaged> {
         let (head, rest) = split(bytes)?;
-        let mut bodies: Vec<Body> = postcard::from_bytes(rest).map_err(|_| Damaged::Contents)?;
+        let mut bodies: Vec<Body> = postcard::from_bytes(rest).map_err(|_| UNFIT)?;
         if bodies.len() != head.units.len() {
-            return Err(Damaged::Contents);
+            return Err(UNFIT);
         }
         for (unit, body) in head.units.iter().zip(&mut bodies) {
             match (unit, body) {
                 (Unit::Trials(trials), Body::Trials(table)) => {
-                    let count = trials.to.checked_sub(trials.from).ok_or(Damaged::Contents)?;
+                    let count = trials.to.checked_sub(trials.from).ok_or(UNFIT)?;
                     table.settle(count, trials.columns.len())?;
                 }
                 (Unit::Run(_), Body::Run(_)) => {}
-                _ => return Err(Damaged::Contents),
+                _ => return Err(UNFIT),
             }
         }
         Ok(Self { head, bodies })
@@ -102,11 +97,11 @@ impl Head {
 fn split(bytes: &[u8]) -> Result<(Head, &[u8]), Damaged> {
     let known = FORMAT.len().min(bytes.len());
     if bytes[..known] != FORMAT[..known] {
-        return Err(Damaged::Format);
+        return Err(FOREIGN);
     }
-    let (bytes, check) = bytes.split_last_chunk::<CHECK>().ok_or(Damaged::Checksum)?;
+    let (bytes, check) = bytes.split_last_chunk::<CHECK>().ok_or(CHANGED)?;
     if bytes.len() < FORMAT.len() || crc32fast::hash(bytes).to_le_bytes() != *check {
-        return Err(Damaged::Checksum);
+        return Err(CHANGED);
     }
-    postcard::take_from_bytes(&bytes[FORMAT.len()..]).map_err(|_| Damaged::Contents)
+    postcard::take_from_bytes(&bytes[FORMAT.len()..]).map_err(|_| UNFIT)
 }

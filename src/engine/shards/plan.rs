@@ -4,7 +4,7 @@ use super::Origin;
 use super::unit::{Trials, Unit};
 use serde::{Deserialize, Serialize};
 
-/// Trials of a shard that are more than this times its share stay together with it.
+/// Trials in a row are not divided further.
 const LEAST: u64 = 64;
 /// A shard takes at least so long where that is known, s: what a queue does for it takes time too.
 const SHORT: f64 = 1.0;
@@ -26,96 +26,74 @@ pub struct Plan {
 
 /// Units that shards did not bring back, and how often.
 #[derive(Clone, Debug, Default)]
-pub struct Attempts(Vec<(Unit, u32)>);
+pub struct Attempts(pub Vec<(Unit, u32)>);
 
 impl Attempts {
     /// A shard did not bring these back.
     pub fn fail(&mut self, units: &[Unit]) {
         for unit in units {
-            match self.0.iter_mut().find(|(known, _)| known.is_within(unit) && unit.is_within(known)) {
+            match self.0.iter_mut().find(|(known, _)| known == unit) {
                 Some((_, times)) => *times += 1,
                 None => self.0.push((unit.clone(), 1)),
             }
         }
     }
 
-    /// How many units were not brought back at least once.
-    pub fn count(&self) -> usize {
-        self.0.len()
-    }
-
     /// The units that are given up.
-    pub fn given_up(&self) -> impl Iterator<Item = &Unit> {
-        self.0.iter().filter(|(_, times)| *times >= MOST_ATTEMPTS).map(|(unit, _)| unit)
+    pub fn given_up(&self) -> Vec<Unit> {
+        self.0.iter().filter(|(_, times)| *times >= MOST_ATTEMPTS).map(|(unit, _)| unit.clone()).collect()
     }
 
-    /// Wanted units that were tried before, and others, without those that are given up and what follows these.
-    fn sort(&self, wanted: &[Unit]) -> (Vec<Unit>, Vec<Unit>) {
-        let (mut again, mut new) = (Vec::new(), Vec::new());
-        for unit in wanted {
-            let Unit::Trials(trials) = unit else {
-                match self.0.iter().find(|(known, _)| known == unit) {
-                    None => new.push(unit.clone()),
-                    Some((_, times)) if *times < MOST_ATTEMPTS => again.push(unit.clone()),
-                    Some(_) => {}
-                }
-                continue;
+    /// What is left of a wanted unit, and which of it was tried before: without what is given up and what follows that.
+    fn pieces(&self, unit: &Unit) -> Vec<(Unit, bool)> {
+        let Unit::Trials(trials) = unit else {
+            let times = self.0.iter().find(|(known, _)| known == unit).map_or(0, |(_, times)| *times);
+            return (times < MOST_ATTEMPTS).then(|| (unit.clone(), times > 0)).into_iter().collect();
+        };
+        let (mut pieces, mut from) = (Vec::new(), trials.from);
+        while from < trials.to {
+            let failed = self.0.iter().filter_map(|(known, times)| match known {
+                Unit::Trials(known) if known.is_beside(trials) && known.to > from => Some((known, *times)),
+                _ => None,
+            });
+            let here = failed.clone().filter(|(known, _)| known.from <= from).max_by_key(|(_, times)| *times);
+            let to = match here {
+                Some((_, MOST_ATTEMPTS..)) => break,
+                Some((known, _)) => known.to,
+                None => failed.map(|(known, _)| known.from).min().unwrap_or(trials.to),
             };
-            let mut from = trials.from;
-            while from < trials.to {
-                let failed = self.0.iter().filter_map(|(known, times)| match known {
-                    Unit::Trials(known) if known.is_beside(trials) && known.to > from => {
-                        Some((known, *times))
-                    }
-                    _ => None,
-                });
-                let here =
-                    failed.clone().filter(|(known, _)| known.from <= from).max_by_key(|(_, times)| *times);
-                let (to, list) = match here {
-                    Some((_, MOST_ATTEMPTS..)) => break,
-                    Some((known, _)) => (known.to, &mut again),
-                    None => (failed.map(|(known, _)| known.from).min().unwrap_or(trials.to), &mut new),
-                };
-                let to = to.min(trials.to);
-                list.push(Unit::Trials(Trials { from, to, ..trials.clone() }));
-                from = to;
-            }
+            let to = to.min(trials.to);
+            pieces.push((Unit::Trials(Trials { from, to, ..trials.clone() }), here.is_some()));
+            from = to;
         }
-        (again, new)
+        pieces
     }
 }
 
 impl Plan {
-    /// Deals wanted units out to `most` shards at most; `pace` is the time of a trial in seconds, if it is known. A unit that
-    /// did not come back stands alone, so that nothing else is lost with it.
+    /// Deals wanted units out to `most` shards at most; `pace` is the time of a trial in seconds, if it is known. Each shard
+    /// gets a slice of each large unit, so that all take alike long. A unit that did not come back stands alone, so that
+    /// nothing else is lost with it.
     pub fn deal(wanted: &[Unit], attempts: &Attempts, most: usize, pace: Option<f64>) -> Vec<Vec<Unit>> {
-        let (again, new) = attempts.sort(wanted);
-        let mut shards: Vec<Vec<Unit>> = again.into_iter().map(|unit| vec![unit]).collect();
-        let all: u64 = new.iter().map(Unit::weight).sum();
+        let pieces = wanted.iter().flat_map(|unit| attempts.pieces(unit));
+        let (again, new): (Vec<_>, Vec<_>) = pieces.partition(|(_, again)| *again);
+        let all: u64 = new.iter().map(|(unit, _)| unit.weight()).sum();
         let worth = pace.map_or(all / LEAST, |pace| (all as f64 * pace / SHORT) as u64);
-        let size = all.div_ceil(worth.clamp(1, most.max(1) as u64)).next_multiple_of(LEAST);
-        let (mut shard, mut filled) = (Vec::new(), 0);
-        for unit in new {
-            let mut rest = Some(unit);
-            while let Some(unit) = rest.take() {
-                let room = size - filled;
-                let unit = match unit {
-                    Unit::Trials(trials) if trials.to - trials.from > room => {
-                        let cut = trials.from + room;
-                        rest = Some(Unit::Trials(Trials { from: cut, ..trials.clone() }));
-                        Unit::Trials(Trials { to: cut, ..trials })
-                    }
-                    unit => unit,
-                };
-                filled += unit.weight();
-                shard.push(unit);
-                if filled >= size {
-                    shards.push(std::mem::take(&mut shard));
-                    filled = 0;
-                }
+        let count = worth.clamp(1, most.max(1) as u64);
+        let mut shards: Vec<Vec<Unit>> = (0..count).map(|_| Vec::new()).collect();
+        for (k, (unit, _)) in new.into_iter().enumerate() {
+            let size = match unit {
+                Unit::Trials(_) => unit.weight().div_ceil(count).next_multiple_of(LEAST),
+                Unit::Run(_) => u64::MAX,
+            };
+            let slices = unit.slices(size);
+            for (slice, unit) in (0..).zip(slices) {
+                // Small units go around.
+                shards[(k + slice) % count as usize].push(unit);
             }
         }
-        shards.extend(Some(shard).filter(|shard| !shard.is_empty()));
+        shards.extend(again.into_iter().map(|(unit, _)| vec![unit]));
+        shards.retain(|shard| !shard.is_empty());
         shards
     }
 }

@@ -11,19 +11,10 @@ use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Trials of all parts that are kept unpacked at a time, at least: parts are read again where they are needed again.
-const KEPT: u64 = 1 << 25;
+/// Parts that are kept at a time, packed as they are: they are read again where they are needed again.
+const KEPT: usize = 16;
 /// Trials that are asked for at a time, in units of lanes.
 const WIDTH: usize = 1 << 11;
-
-/// Two parts that say different things of the same trials: one of them is wrong.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Contradiction {
-    /// Their places among the parts.
-    pub parts: [usize; 2],
-    /// The trials.
-    pub unit: Unit,
-}
 
 /// A unit of trials in a part.
 struct Piece {
@@ -51,8 +42,15 @@ pub struct Stored<'r> {
 }
 
 impl<'r> Stored<'r> {
-    /// The outcomes of some parts, of which `heads` are known. Parts that contradict each other are left out.
-    pub fn new(heads: &[&Head], reread: Reread<'r>, threads: &'r Threads) -> (Self, Vec<Contradiction>) {
+    /// The outcomes of some parts, of which `heads` are known.
+    ///
+    /// # Errors
+    /// If two parts, here with their places, say different things of a unit.
+    pub fn new(
+        heads: &[&Head],
+        reread: Reread<'r>,
+        threads: &'r Threads,
+    ) -> Result<Self, ([usize; 2], Unit)> {
         let mut stored = Self {
             threads,
             reread,
@@ -61,8 +59,18 @@ impl<'r> Stored<'r> {
             recent: Mutex::default(),
             wanted: Mutex::default(),
         };
+        let mut known = BTreeMap::new();
         for (part, head) in heads.iter().enumerate() {
             for (at, unit) in head.units.iter().enumerate() {
+                // Of a unit that came twice one is read.
+                if let Some(&(other, place)) = known.get(&format!("{unit:?}")) {
+                    let body = |part, at: usize| stored.part(part).map(|part| part.bodies[at].clone());
+                    if body(part, at) != body(other, place) {
+                        return Err(([other, part], unit.clone()));
+                    }
+                    continue;
+                }
+                known.insert(format!("{unit:?}"), (part, at));
                 match unit {
                     Unit::Trials(trials) => {
                         let piece = Piece { trials: trials.clone(), part, unit: at };
@@ -75,62 +83,12 @@ impl<'r> Stored<'r> {
         for pieces in stored.pieces.values_mut() {
             pieces.sort_by_key(|piece| (piece.trials.from, piece.part));
         }
-        let found = stored.contradictions();
-        let is_wrong = |part: usize| found.iter().any(|one| one.parts.contains(&part));
-        stored.pieces.values_mut().for_each(|pieces| pieces.retain(|piece| !is_wrong(piece.part)));
-        stored.runs.retain(|(_, part, _)| !is_wrong(*part));
-        (stored, found)
+        Ok(stored)
     }
 
     /// What was requested, and is not there.
     pub fn wanted(&self) -> Vec<Unit> {
         self.wanted.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// Compares all that two parts say of the same trials and runs.
-    fn contradictions(&self) -> Vec<Contradiction> {
-        let mut found = Vec::new();
-        for pieces in self.pieces.values() {
-            let mut furthest = 0;
-            for (k, piece) in pieces.iter().enumerate() {
-                let to = pieces[furthest].trials.to;
-                if k > 0 && piece.trials.from < to {
-                    found.extend(self.compare(&pieces[furthest], piece));
-                }
-                if piece.trials.to > to {
-                    furthest = k;
-                }
-            }
-        }
-        for (k, (run, part, unit)) in self.runs.iter().enumerate() {
-            for (_, other, at) in self.runs[..k].iter().filter(|(other, ..)| other == run) {
-                let body = |part: usize, unit: usize| Some(self.part(part)?.bodies[unit].clone());
-                if body(*part, *unit) != body(*other, *at) {
-                    found.push(Contradiction { parts: [*other, *part], unit: Unit::Run(run.clone()) });
-                }
-            }
-        }
-        found
-    }
-
-    fn compare(&self, one: &Piece, other: &Piece) -> Option<Contradiction> {
-        let (a, b) = (self.part(one.part)?, self.part(other.part)?);
-        let (Body::Trials(first), Body::Trials(second)) = (&a.bodies[one.unit], &b.bodies[other.unit]) else {
-            return None;
-        };
-        let both = other.trials.from..other.trials.to.min(one.trials.to);
-        let differs = |index: &u64| {
-            one.trials.columns.iter().enumerate().any(|(k, column)| {
-                let at = other.trials.columns.iter().position(|known| known == column);
-                at.is_some_and(|at| {
-                    first.numbers((index - one.trials.from) as usize, k)
-                        != second.numbers((index - other.trials.from) as usize, at)
-                })
-            })
-        };
-        let from = both.clone().find(differs)?;
-        let unit = Unit::Trials(Trials { from, to: both.end, ..other.trials.clone() });
-        Some(Contradiction { parts: [one.part, other.part], unit })
     }
 
     /// A part, which is kept for a while.
@@ -143,16 +101,7 @@ impl<'r> Stored<'r> {
         }
         let part = (self.reread)(place).map(Arc::new);
         recent.push_front((place, part.clone()));
-        let weight = |part: &Option<Arc<Part>>| {
-            part.iter().flat_map(|part| &part.head.units).map(Unit::weight).sum::<u64>()
-        };
-        let mut all = 0;
-        let kept = recent.iter().take_while(|(_, part)| {
-            all += weight(part);
-            all <= KEPT || part.is_none()
-        });
-        let kept = kept.count().max(1);
-        recent.truncate(kept);
+        recent.truncate(KEPT);
         part
     }
 
@@ -221,7 +170,7 @@ impl Executor for Stored<'_> {
             let later = later.map(|piece| piece.trials.from).filter(|from| *from > index).min();
             let to = later.unwrap_or(u64::MAX).min(trials.end);
             let unit = Unit::Trials(Trials { world, columns: job.columns.clone(), advice, from: index, to });
-            if !wanted.iter().any(|known| unit.is_within(known)) {
+            if !wanted.contains(&unit) {
                 wanted.push(unit);
             }
             is_lacking |= index == trials.start;

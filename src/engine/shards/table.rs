@@ -2,7 +2,7 @@
 //! as many bits as the largest one needs. A truth value takes a bit, a length of a few hundred steps nine, what is the same
 //! in all trials of a block none; nothing is rounded.
 
-use super::part::Damaged;
+use super::part::{Damaged, UNFIT};
 use crate::engine::cell::{Cell, Reading};
 use serde::{Deserialize, Serialize};
 
@@ -102,7 +102,7 @@ impl Table {
         let blocks = self.trials.div_ceil(BLOCK);
         let is_sized = self.trials as u64 == trials && self.columns == columns && columns > 0;
         if !is_sized || blocks.checked_mul(columns * KINDS) != Some(self.rows.len()) {
-            return Err(Damaged::Contents);
+            return Err(UNFIT);
         }
         let mut at = 0;
         for (k, row) in self.rows.iter_mut().enumerate() {
@@ -112,7 +112,7 @@ impl Table {
             at += (trials * usize::from(row.width)).div_ceil(8);
         }
         if at != self.bytes.len() || self.rows.iter().any(|row| u32::from(row.width) > u64::BITS) {
-            return Err(Damaged::Contents);
+            return Err(UNFIT);
         }
         self.bytes.resize(at + PADDING, 0);
         Ok(())
@@ -121,14 +121,8 @@ impl Table {
     /// The cell of a trial and a column, both counted from 0, of a table that is settled.
     #[inline]
     pub(super) fn cell(&self, trial: usize, column: usize) -> Cell {
-        cell(self.numbers(trial, column))
-    }
-
-    /// What is stored of it: cells are the same to the last bit where these numbers are.
-    #[inline]
-    pub(super) fn numbers(&self, trial: usize, column: usize) -> [u64; KINDS] {
         let rows = &self.rows[(trial / BLOCK * self.columns + column) * KINDS..][..KINDS];
-        std::array::from_fn(|kind| self.number(&rows[kind], trial % BLOCK))
+        cell(std::array::from_fn(|kind| self.number(&rows[kind], trial % BLOCK)))
     }
 
     #[inline]

@@ -34,18 +34,16 @@ impl Unit {
         match self {
             Self::Trials(trials) => trials.to.saturating_sub(trials.from),
             // Each of a few levels replaces some of the paths.
-            Self::Run(run) => run.replicas.saturating_mul(4),
+            Self::Run(run) => run.rule.replicas.saturating_mul(4),
         }
     }
 
-    /// Whether another one does all of this, or this is a piece of it.
-    pub(super) fn is_within(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Trials(one), Self::Trials(other)) => {
-                one.is_beside(other) && other.from <= one.from && one.to <= other.to
-            }
-            _ => self == other,
-        }
+    /// Trials in rows of so many; what cannot be divided as it is.
+    pub(super) fn slices(self, size: u64) -> Vec<Self> {
+        let Self::Trials(trials) = &self else { return vec![self] };
+        let starts = (trials.from..trials.to).step_by(usize::try_from(size).unwrap_or(usize::MAX));
+        let to = |from: u64| from.saturating_add(size).min(trials.to);
+        starts.map(|from| Self::Trials(Trials { from, to: to(from), ..trials.clone() })).collect()
     }
 }
 

@@ -191,10 +191,7 @@ fn runs(
     let run = |branch: u64, levels: &[f64]| SplitRun {
         world: question.prepared.number.unwrap_or_default(),
         columns: [question.column, question.level],
-        adaptive: rule.adaptive,
-        replicas: rule.replicas,
-        kill: rule.kill,
-        runs: rule.runs,
+        rule,
         branch: branch as u16,
         lost_reaches,
         levels: levels.to_vec(),

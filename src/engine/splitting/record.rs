@@ -3,7 +3,7 @@
 //! and `--max-trials` may end them between two generations.
 
 use crate::stats::Invalid;
-use crate::stats::splitting::{Adaptive, Effort, Scheme};
+use crate::stats::splitting::{Adaptive, Effort, Rule, Scheme};
 use serde::{Deserialize, Serialize};
 
 /// A run of splitting.
@@ -13,15 +13,9 @@ pub struct SplitRun {
     pub world: usize,
     /// Column of the formula, and of the robustness that is its level.
     pub columns: [usize; 2],
-    /// Whether levels are found on the way.
-    pub adaptive: bool,
-    /// Paths of the run.
-    pub replicas: u64,
-    /// Paths given up at each level, at least.
-    pub kill: u64,
-    /// Number of runs of the query; the run after the last one finds levels for the others.
-    pub runs: u64,
-    /// Number of this run, from 1.
+    /// The rule of its query.
+    pub rule: Rule,
+    /// Number of the run, from 1; the one after the last finds levels for the others.
     pub branch: u16,
     /// Whether lost paths are read as reaching the event.
     pub lost_reaches: bool,
@@ -54,10 +48,10 @@ pub struct RunRecord {
 impl SplitRun {
     /// How it finds and uses its levels.
     pub(super) fn scheme(&self, seed: u64) -> Result<Box<dyn Scheme>, Invalid> {
-        let replicas = self.replicas as usize;
-        Ok(if self.adaptive {
-            Box::new(Adaptive::new(replicas, self.kill as usize, seed, self.branch)?)
-        } else if u64::from(self.branch) > self.runs {
+        let (rule, replicas) = (self.rule, self.rule.replicas as usize);
+        Ok(if rule.adaptive {
+            Box::new(Adaptive::new(replicas, rule.kill as usize, seed, self.branch)?)
+        } else if u64::from(self.branch) > rule.runs {
             // A pilot run finds the levels; its own estimate is not used.
             Box::new(Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, self.branch)?)
         } else {
