@@ -123,7 +123,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
         let default = if launch.is_some_and(launch::is_local) { threads } else { SHARDS };
-        let mut warn = |warnings: &[Diagnostic]| reporter.warn(warnings);
+        let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
         let mut rounds = Rounds {
             study,
             call: call(),

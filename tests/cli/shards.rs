@@ -69,10 +69,24 @@ fn is_installed(program: &str) -> bool {
     let found = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     let there = found.is_ok_and(|status| status.success());
     if !there {
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stderr(), "SKIPPED: `{program}` is not installed");
+        skipped(&format!("`{program}` is not installed"));
     }
     there
+}
+
+/// Says that a test is left out.
+fn skipped(why: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {why}");
+}
+
+/// Waits until something is so.
+fn wait_for(what: &str, is_so: impl Fn() -> bool) {
+    let started = Instant::now();
+    while !is_so() {
+        assert!(started.elapsed() < Duration::from_mins(2), "never: {what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
 }
 
 #[test]
@@ -170,10 +184,10 @@ fn wrong_parts_give_no_verdict() {
         let said = merge();
         assert_eq!(said.code, Some(4));
         assert!(said.err.contains("W0722") && said.err.contains("0001-000001.part"), "{}", said.err);
-        assert!(said.err.contains("trials 512 to 1023"), "{}", said.err);
+        assert!(said.err.contains("trials 504 to 1007"), "{}", said.err);
         assert_eq!(
             (&said.json()["results"][0]["trials"], &said.json()["results"][0]["stopped_by"]),
-            (&512.into(), &"missing".into())
+            (&504.into(), &"missing".into())
         );
         std::fs::remove_file(place.path("parts").join("plan.json")).unwrap();
         // The plan of the first round is what names the part.
@@ -183,9 +197,9 @@ fn wrong_parts_give_no_verdict() {
     // A part that is missing is named by its range, and is all that is planned.
     std::fs::remove_file(&all[1]).unwrap();
     let said = merge();
-    assert!(said.err.contains("parts are missing: 1 (trials 512 to 1023 of world 0)"), "{}", said.err);
+    assert!(said.err.contains("parts are missing: 1 (trials 504 to 1007 of world 0)"), "{}", said.err);
     let units: Vec<Unit> = plan(&place, "parts").shards.concat();
-    assert_eq!(units.iter().map(Unit::weight).sum::<u64>(), 512);
+    assert_eq!(units.iter().map(Unit::weight).sum::<u64>(), 504);
     // The same part twice is read once; of two that differ neither is believed.
     std::fs::write(&all[1], &good).unwrap();
     let twice = all[1].with_file_name("0009-000000.part");
@@ -206,7 +220,7 @@ fn first_plan(place: &Place) -> Plan {
         all.iter().filter_map(|file| Head::read(&std::fs::read(file).unwrap()).ok()).collect();
     let mut shards: Vec<Vec<Unit>> = heads.iter().map(|head| head.units.clone()).collect();
     let Unit::Trials(trials) = &shards[0][0] else { panic!() };
-    let lost = smc::engine::shards::Trials { from: 512, to: 1024, ..trials.clone() };
+    let lost = smc::engine::shards::Trials { from: 504, to: 1008, ..trials.clone() };
     shards.insert(1, vec![Unit::Trials(lost)]);
     Plan { origin: heads[0].origin.clone(), round: 1, max_trials: 2000, shards }
 }
@@ -345,11 +359,7 @@ fn a_call_that_is_killed_goes_on_where_it_was() {
     let line = "for i in 0 1 2; do sh {shard} $i; done; touch done; sleep 600";
     let mut command = place.command(&words(&["--launch", line, "--parts", "parts", "--shards", "4"]));
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let started = Instant::now();
-    while !place.path("done").exists() {
-        assert!(started.elapsed() < Duration::from_mins(2), "the shards are run");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    wait_for("the shards are run", || place.path("done").exists());
     child.kill().unwrap();
     child.wait().unwrap();
     let before = parts(&place, "parts");
@@ -397,11 +407,8 @@ fn an_interruption_ends_the_launcher_and_reports_what_is_there() {
     let mut command =
         place.command(&[&CALL[..], &["-q", "--format", "json", "--launch", line, "--shards", "1"]].concat());
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let started = Instant::now();
-    while !std::fs::read_to_string(place.path("pid")).is_ok_and(|pid| pid.ends_with('\n')) {
-        assert!(started.elapsed() < Duration::from_mins(2), "the shard is run");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    let told = || std::fs::read_to_string(place.path("pid")).is_ok_and(|pid| pid.ends_with('\n'));
+    wait_for("the shard is run", told);
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let said = Said::of(&child.wait_with_output().unwrap());
     assert_eq!((said.code, &said.json()["results"][0]["stopped_by"]), (Some(130), &"interrupt".into()));
@@ -409,10 +416,7 @@ fn an_interruption_ends_the_launcher_and_reports_what_is_there() {
     let pid = std::fs::read_to_string(place.path("pid")).unwrap();
     let gone =
         || !Command::new("kill").args(["-0", pid.trim()]).stderr(Stdio::null()).status().unwrap().success();
-    while !gone() {
-        assert!(started.elapsed() < Duration::from_mins(2), "the launcher is ended");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    wait_for("the launcher is ended", gone);
 }
 
 #[test]
@@ -452,4 +456,91 @@ fn gnu_parallel_runs_the_shards() {
     let alone = place.call(&words(&["-j", "1"]));
     let led = place.call(&words(&["--launch", "seq 0 {last} | parallel -j 2 sh {shard}", "--shards", "6"]));
     assert_eq!(report(&led), report(&alone), "{}", led.err);
+}
+
+/// A Python that has the wheel of HyperQueue: that of `SMC_HQ_PYTHON`, or else `python3`.
+fn hyperqueue() -> Option<String> {
+    let python = std::env::var("SMC_HQ_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let found = Command::new(&python).args(["-c", "import hyperqueue"]).stderr(Stdio::null()).status();
+    let there = found.is_ok_and(|status| status.success());
+    if !there {
+        skipped(&format!("`{python}` has no HyperQueue (pip install hyperqueue; set SMC_HQ_PYTHON)"));
+    }
+    there.then_some(python)
+}
+
+/// A process that is ended with the test.
+struct Ended(std::process::Child);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A server and workers in one process; it is up when this returns.
+fn cluster(place: &Place, python: &str, folder: &str) -> Ended {
+    std::fs::create_dir(place.path(folder)).unwrap();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/queues/cluster.py");
+    let mut command = Command::new(python);
+    command.arg(script).arg(place.path(folder)).arg("3").stdout(Stdio::null()).stderr(Stdio::null());
+    let child = Ended(command.spawn().unwrap());
+    wait_for("the cluster is up", || place.path(folder).join("ready").exists());
+    child
+}
+
+#[cfg(unix)]
+#[test]
+fn hyperqueue_runs_the_shards_and_may_be_killed() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let Some(python) = hyperqueue() else { return };
+    let place = place(PROPERTIES);
+    let alone = place.call(&words(&["-j", "1"]));
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/queues/hq.py");
+    std::fs::create_dir(place.path("bin")).unwrap();
+    place.write("bin/hq", format!("#!/bin/sh\nexec '{python}' '{script}' \"$@\"\n").as_bytes());
+    std::fs::set_permissions(place.path("bin/hq"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", place.path("bin").display(), std::env::var("PATH").unwrap_or_default());
+    let call = |server: &str| {
+        let mut command = place.command(&words(&["--launch", "hq", "--parts", "parts", "--shards", "5"]));
+        command.env("PATH", &path).env("HQ_SERVER_DIR", place.path(server));
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    };
+    // The server and its workers are killed in the first round.
+    let killed = cluster(&place, &python, "killed");
+    let child = call("killed").spawn().unwrap();
+    let has_part = || place.path("parts").is_dir() && !parts(&place, "parts").is_empty();
+    wait_for("a part is there", has_part);
+    drop(killed);
+    let first = Said::of(&child.wait_with_output().unwrap());
+    assert!(first.code == Some(2) && first.err.contains("E0725"), "{:?} {}", first.code, first.err);
+    // With another cluster the call goes on.
+    let _cluster = cluster(&place, &python, "second");
+    let led = Said::of(&call("second").output().unwrap());
+    assert_eq!(led.code, alone.code, "{}", led.err);
+    assert!(report(&led) == report(&alone), "{}\n{}", led.out, alone.out);
+}
+
+#[test]
+fn slurm_runs_the_shards_and_repeats_one_that_it_ended() {
+    let up = Command::new("sinfo").arg("-h").stderr(Stdio::null()).output();
+    if !up.is_ok_and(|said| said.status.success() && !said.stdout.is_empty()) {
+        return skipped("no Slurm cluster answers `sinfo`");
+    }
+    let place = place(PROPERTIES);
+    let alone = place.call(&words(&["-j", "1"]));
+    let led = place.call(&words(&["--launch", "slurm", "--shards", "4"]));
+    assert!(report(&led) == report(&alone), "{}\n{}", led.out, alone.out);
+    // Slurm ends the second shard of the first round, as it does at a time limit.
+    place.write(
+        "slow.sh",
+        b"#!/bin/sh\nif [ \"$SLURM_ARRAY_TASK_ID\" = 1 ] && mkdir once 2>/dev/null; then\n\
+          scancel --signal=KILL --full \"${SLURM_ARRAY_JOB_ID}_1\"; sleep 600; fi\nexec sh parts/shard.sh\n",
+    );
+    let line = "sbatch --wait --array=0-{last} --output=/dev/null slow.sh";
+    let led = place.call(&words(&["--launch", line, "--parts", "parts", "--shards", "4"]));
+    assert!(report(&led) == report(&alone), "{}\n{}", led.out, alone.out);
+    assert!(led.err.contains("W0722") && led.err.contains("parts are missing: 1"), "{}", led.err);
 }

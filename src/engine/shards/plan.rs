@@ -2,10 +2,11 @@
 
 use super::Origin;
 use super::unit::{Trials, Unit};
+use crate::base::lanes::LANES;
 use serde::{Deserialize, Serialize};
 
-/// Trials in a row are not divided further.
-const LEAST: u64 = 64;
+/// A slice of a unit is at least such a part of a shard: each world takes time to be made ready.
+const PARTS: u64 = 16;
 /// A shard takes at least so long where that is known, s: what a queue does for it takes time too.
 const SHORT: f64 = 1.0;
 /// A unit that so many shards did not bring back is given up.
@@ -78,14 +79,12 @@ impl Plan {
         let pieces = wanted.iter().flat_map(|unit| attempts.pieces(unit));
         let (again, new): (Vec<_>, Vec<_>) = pieces.partition(|(_, again)| *again);
         let all: u64 = new.iter().map(|(unit, _)| unit.weight()).sum();
-        let worth = pace.map_or(all / LEAST, |pace| (all as f64 * pace / SHORT) as u64);
+        let lanes = LANES as u64;
+        let worth = pace.map_or(all / lanes, |pace| (all as f64 * pace / SHORT) as u64);
         let count = worth.clamp(1, most.max(1) as u64);
         let mut shards: Vec<Vec<Unit>> = (0..count).map(|_| Vec::new()).collect();
         for (k, (unit, _)) in new.into_iter().enumerate() {
-            let size = match unit {
-                Unit::Trials(_) => unit.weight().div_ceil(count).next_multiple_of(LEAST),
-                Unit::Run(_) => u64::MAX,
-            };
+            let size = (unit.weight() / count).max(all / count / PARTS).max(1).next_multiple_of(lanes);
             let slices = unit.slices(size);
             for (slice, unit) in (0..).zip(slices) {
                 // Small units go around.
