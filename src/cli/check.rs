@@ -2,7 +2,7 @@
 
 use super::arguments::{Check, Questions};
 use super::deadline::{Deadline, Ended, Phase};
-use super::launch::{self, Launcher};
+use super::launch::Launcher;
 use super::merge::Rounds;
 use super::outputs::Outputs;
 use super::parts::PartsFolder;
@@ -31,11 +31,9 @@ use std::sync::Arc;
 /// Most shards of a round, unless set, where they run elsewhere.
 const SHARDS: usize = 100;
 
-/// Where the outcomes of a call come from.
+/// Where outcomes come from: trials that are run or launched, or the parts in a folder.
 pub(super) enum Way<'a> {
-    /// From trials, which `smc check` runs or launches.
     Check(&'a Check),
-    /// From the parts in a folder.
     Merge(&'a Path),
 }
 
@@ -122,7 +120,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         let run = run_study(study, &call(), &executor, &budget, &progress);
         run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
-        let default = if launch.is_some_and(launch::is_local) { threads } else { SHARDS };
+        let default = if launch == Some("local") { threads } else { SHARDS };
         let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
         let mut rounds = Rounds {
             study,

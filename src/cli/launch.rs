@@ -14,8 +14,6 @@ use std::time::Duration;
 
 /// Between two looks at the folder.
 const LOOK: Duration = Duration::from_millis(20);
-/// Lines of the launcher that an error quotes.
-const QUOTED: usize = 5;
 
 /// The lines of the engines that are known by name.
 const ENGINES: [(&str, &str); 3] = [
@@ -36,24 +34,19 @@ pub(super) struct Launcher<'a> {
     pub(super) jobs: usize,
 }
 
-/// Whether an engine runs on this machine alone.
-pub(super) fn is_local(engine: &str) -> bool {
-    engine == ENGINES[0].0
-}
-
 impl Launcher<'_> {
     /// Writes the script of a shard: the index is its argument, or what the queue says.
-    fn script(&self, folder: &PartsFolder, program: &str) -> Result<PathBuf, Diagnostic> {
-        let file = folder.path().join("shard.sh");
+    fn script(&self, folder: &PartsFolder, program: &Path) -> Result<PathBuf, Diagnostic> {
+        let file = folder.path.join("shard.sh");
         let path = |path: &Path| quoted(&path.display().to_string());
-        let (plan, parts) = (path(&folder.plan_file()), path(folder.path()));
+        let (plan, parts) = (path(&folder.plan_file()), path(&folder.path));
         let call = self.line.shard();
         let call = call.strip_prefix("smc ").unwrap_or(&call);
         let script = format!(
             "#!/bin/sh\n\
              index=${{1:-${{HQ_TASK_ID:-${{SLURM_ARRAY_TASK_ID:-$JOB_COMPLETION_INDEX}}}}}}\n\
              {} {call} --round {plan} --index \"$index\" -o {parts} || exit 1\n",
-            quoted(program)
+            path(program)
         );
         output::write(&file, |out| out.write_all(script.as_bytes()))
             .map_err(|error| complaint::unwritten(&file, &error))?;
@@ -62,7 +55,7 @@ impl Launcher<'_> {
 
     /// The job for Kubernetes, if it is asked for.
     pub(super) fn manifest(&self, folder: &PartsFolder, plan: &Plan) -> Result<Option<String>, Diagnostic> {
-        let script = || self.script(folder, "smc");
+        let script = || self.script(folder, Path::new("smc"));
         (self.engine == "k8s").then(|| Ok(self.fill(MANIFEST, folder, plan, &script()?))).transpose()
     }
 
@@ -71,7 +64,7 @@ impl Launcher<'_> {
         let count = plan.shards.len();
         let path = |path: &Path| quoted(&path.display().to_string());
         text.replace("{plan}", &path(&folder.plan_file()))
-            .replace("{parts}", &path(folder.path()))
+            .replace("{parts}", &path(&folder.path))
             .replace("{shard}", &path(script))
             .replace("{round}", &plan.round.to_string())
             .replace("{count}", &count.to_string())
@@ -87,18 +80,14 @@ impl Launcher<'_> {
         budget: &Budget,
         told: &dyn Fn(usize),
     ) -> Result<(), Diagnostic> {
-        let program =
-            std::env::current_exe().map_or_else(|_| "smc".to_owned(), |path| path.display().to_string());
-        let script = self.script(folder, &program)?;
+        let script = self.script(folder, &std::env::current_exe().unwrap_or_else(|_| "smc".into()))?;
         let line =
             ENGINES.iter().find(|(name, _)| *name == self.engine).map_or(self.engine, |(_, line)| line);
         let command = self.fill(line, folder, plan, &script);
-        let log = folder.path().join("launcher.log");
+        let log = folder.path.join("launcher.log");
         let failed = |reason: String| {
             let said = std::fs::read_to_string(&log).unwrap_or_default();
-            let lines: Vec<&str> = said.lines().collect();
-            let last = lines[lines.len().saturating_sub(QUOTED)..].join("; ");
-            let said = if last.is_empty() { last } else { format!(": {last}") };
+            let said = said.lines().last().map_or(String::new(), |last| format!(": {last}"));
             Diagnostic::placeless(Code::E0725, format!("the launcher `{command}` {reason}{said}"))
                 .hint("see `smc explain E0725` for the launchers; parts that are there are used when you call again")
         };

@@ -13,16 +13,14 @@ const NAMED: usize = 8;
 
 /// What was read of a folder so far.
 pub(super) struct PartsFolder {
-    path: PathBuf,
+    /// Where it is.
+    pub(super) path: PathBuf,
     is_kept: bool,
     /// The parts of this call, in the order in which they were found.
     parts: Vec<(PathBuf, Head)>,
     /// All files that were looked at.
     seen: BTreeSet<PathBuf>,
 }
-
-/// The name of a plan in its folder.
-const PLAN: &str = "plan.json";
 
 /// The name of a part in its folder.
 pub(super) fn name(round: u64, index: usize) -> String {
@@ -52,13 +50,6 @@ fn warning(title: String) -> Diagnostic {
     Diagnostic { severity: Severity::Warning, ..warning }
 }
 
-/// Makes a folder, and those that it is in.
-pub(super) fn make(path: &Path) -> Result<(), Diagnostic> {
-    let unmade =
-        |error| super::complaint::output(format!("the folder `{}` cannot be made: {error}", path.display()));
-    std::fs::create_dir_all(path).map_err(unmade)
-}
-
 /// Units in words.
 pub(super) fn words(units: &[Unit]) -> String {
     let mut words: Vec<String> = units.iter().take(NAMED).map(ToString::to_string).collect();
@@ -71,18 +62,13 @@ pub(super) fn words(units: &[Unit]) -> String {
 impl PartsFolder {
     /// A folder, which is made where it does not exist, and removed at the end unless it is kept.
     pub(super) fn new(path: PathBuf, is_kept: bool) -> Result<Self, Diagnostic> {
-        make(&path)?;
+        std::fs::create_dir_all(&path).map_err(|error| super::complaint::unwritten(&path, &error))?;
         Ok(Self { path, is_kept, parts: Vec::new(), seen: BTreeSet::new() })
-    }
-
-    /// Where it is.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
     }
 
     /// The file of its plan.
     pub(super) fn plan_file(&self) -> PathBuf {
-        self.path.join(PLAN)
+        self.path.join("plan.json")
     }
 
     /// Its plan, if there is one.

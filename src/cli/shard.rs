@@ -3,8 +3,8 @@
 use super::arguments::ShardCommand;
 use super::parts::{name, read_plan, same_origin};
 use super::terminal::Colors;
-use super::{complaint, inputs, output, parts};
-use crate::engine::shards::{Origin, run as run_shard};
+use super::{complaint, inputs, output};
+use crate::engine::shards::{Origin, Unit, run as run_shard};
 use crate::engine::{Budget, Fault, Threads};
 use crate::gait;
 use crate::library;
@@ -28,11 +28,15 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
         let count = plan.shards.len();
         if arguments.index >= count {
             let title = format!("the plan has no shard {}", arguments.index);
-            let hint = format!("write an index from 0 to {}", count.saturating_sub(1));
-            return Err(one(complaint::argument(title, hint)));
+            return Err(one(complaint::argument(title, format!("write an index below {count}"))));
         }
         let ways = Ways::default();
-        let doubts = library::survey(&mut study, &[], seed, &ways);
+        // Only what is asked must be right.
+        let worlds: Vec<usize> = plan.shards[arguments.index].iter().map(Unit::world).collect();
+        let asked =
+            study.queries.iter().filter(|query| query.ask.worlds().iter().any(|at| worlds.contains(at)));
+        let only: Vec<usize> = asked.map(|query| query.index).collect();
+        let doubts = library::survey(&mut study, &only, seed, &ways);
         if library::is_refused(&doubts) {
             return Err(doubts);
         }
@@ -45,7 +49,6 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
         let part = run_shard(&study, (&plan, arguments.index), &drivers, &threads, &budget);
         let Some(part) = part.map_err(refusals)? else { return Ok(Exit::Interrupted) };
         let bytes = part.bytes().map_err(|error| one(complaint::output(error.to_string())))?;
-        parts::make(&arguments.output).map_err(one)?;
         let file = arguments.output.join(name(plan.round, arguments.index));
         output::write(&file, |out| out.write_all(&bytes))
             .map_err(|error| one(complaint::unwritten(&file, &error)))?;

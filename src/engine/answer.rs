@@ -61,16 +61,6 @@ pub(super) struct Answers<'a> {
 }
 
 impl Answers<'_> {
-    /// The budget that ends a query, and its share of it. Outcomes that are not there are missing for one query: it ends, and
-    /// the others go on.
-    pub(super) fn limits<'b>(
-        &'b self,
-        executor: &dyn Executor,
-        share: &'b Budget,
-    ) -> (&'b Budget, &'b Budget) {
-        (if executor.is_stored() { share } else { self.budget }, share)
-    }
-
     /// What is known of a query before its first trial.
     pub(super) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
@@ -338,7 +328,7 @@ impl Answers<'_> {
         };
         let worlds = [compare.prepared(0), compare.prepared(1)];
         let prepared = worlds[0];
-        let Some(gap) = compare.run(executor, self.limits(executor, share), watch)? else { return Ok(None) };
+        let Some(gap) = compare.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
         result.method = method::of(&query.ask, None);
@@ -395,7 +385,7 @@ impl Answers<'_> {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
-        let Some(ranked) = rank.run(executor, self.limits(executor, share), watch)? else { return Ok(None) };
+        let Some(ranked) = rank.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let setup = rank.setup();
         let mut result = self.blank(query, Kind::Rank);
         result.method = method::of(&query.ask, None);

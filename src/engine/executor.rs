@@ -133,8 +133,8 @@ pub trait Executor: Sync {
         false
     }
 
-    /// A run of splitting where these are stored: requested if it is not there, and without a record where the model is
-    /// wrong in it.
+    /// A run of splitting where these are stored: requested if it is not there, and without a record where it has to be
+    /// made again.
     fn record(&self, _run: &SplitRun) -> Option<Option<RunRecord>> {
         None
     }

@@ -237,8 +237,7 @@ impl Stop {
         }
     }
 
-    /// Whether more time, or more outcomes, would have changed where it stopped: how many trials were read is then no
-    /// function of the query.
+    /// Whether how many trials were read is no function of the query.
     pub const fn is_early(self) -> bool {
         matches!(self, Self::Deadline | Self::Interrupt | Self::Missing)
     }

@@ -13,7 +13,7 @@ use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
 use super::tally::Tally;
-use super::watch::{Forecast, Watch};
+use super::watch::{Forecast, Likely, Watch};
 use crate::base::lanes::LANES;
 use crate::compile::study::{MeasureKind, Query, RankOption, Target};
 use crate::stats::ranking::{Booleans, Choice, Each, Race, Ranking, Scores, Share};
@@ -23,8 +23,6 @@ use std::sync::atomic::Ordering;
 
 /// Trials an option gets in a round: traces of crowds are slow.
 pub(super) const WORD: u64 = 32;
-/// First trials of an option that are requested where outcomes are stored.
-const AHEAD: u64 = 4 * WORD;
 
 /// The procedure of a ranking.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time")]
@@ -262,13 +260,15 @@ impl<'s> RankSampling<'s> {
     /// Requests the trials of a round, and those that most likely follow: of all options that are still open.
     fn request(&self, round: &Round, executor: &dyn Executor, (left, most): (u64, u64)) {
         let arms = self.setup.options.len();
-        let each = match self.setup.rule {
-            (epsilon, delta, Ranking::Okamoto) => stats::ranking::size(arms, epsilon / self.scale(), delta),
-            _ => 0,
+        let known = match self.setup.rule {
+            (epsilon, delta, Ranking::Okamoto) => {
+                Some(Likely::exactly(stats::ranking::size(arms, epsilon / self.scale(), delta)))
+            }
+            _ => None,
         };
         for share in &round.shares {
-            let ahead = each.max(share.to).max(share.from + share.from / 5).max(AHEAD);
-            let ahead = ahead.min(most).min(share.from.saturating_add(left));
+            let ahead = forecast::ahead(share.from, known).max(share.to).min(most);
+            let ahead = ahead.min(share.from.saturating_add(left));
             let advice = self.setup.options[share.arm].advice;
             executor.request(&self.jobs[self.job_of[share.arm]], advice, share.from..ahead);
         }

@@ -409,8 +409,10 @@ impl<'a> Session<'a> {
         watch: &dyn Watch,
     ) -> Result<Turn<'q>, Fault> {
         let Group { mut places, sampling } = group;
-        let answers = Answers { call: self.call, budget: self.budget };
-        let budgets = answers.limits(executor, share);
+        // Outcomes that are not there are missing for one group: it ends, and the others go on.
+        let budget = if executor.is_stored() { share } else { self.budget };
+        let answers = Answers { call: self.call, budget };
+        let budgets = (budget, share);
         let mut broken = None;
         let results = match sampling {
             Sampling::Estimate(mut estimate) => {

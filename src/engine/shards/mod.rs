@@ -20,7 +20,7 @@ pub use stored::{Reread, Stored};
 pub use table::Table;
 pub use unit::{Trials, Unit};
 
-pub use super::splitting::{Generation, RunRecord, SplitRun};
+pub use super::splitting::{RunRecord, SplitRun};
 
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;

@@ -29,7 +29,7 @@ pub struct Head {
 pub enum Body {
     /// Outcomes of trials.
     Trials(Table),
-    /// A run of splitting; none where the model is wrong in it.
+    /// A run of splitting; none where the model is wrong in it, or the budget ends it.
     Run(Option<RunRecord>),
 }
 

@@ -51,23 +51,26 @@ impl Attempts {
             let times = self.0.iter().find(|(known, _)| known == unit).map_or(0, |(_, times)| *times);
             return (times < MOST_ATTEMPTS).then(|| (unit.clone(), times > 0)).into_iter().collect();
         };
-        let (mut pieces, mut from) = (Vec::new(), trials.from);
-        while from < trials.to {
-            let failed = self.0.iter().filter_map(|(known, times)| match known {
-                Unit::Trials(known) if known.is_beside(trials) && known.to > from => Some((known, *times)),
-                _ => None,
-            });
-            let here = failed.clone().filter(|(known, _)| known.from <= from).max_by_key(|(_, times)| *times);
-            let to = match here {
-                Some((_, MOST_ATTEMPTS..)) => break,
-                Some((known, _)) => known.to,
-                None => failed.map(|(known, _)| known.from).min().unwrap_or(trials.to),
-            };
-            let to = to.min(trials.to);
-            pieces.push((Unit::Trials(Trials { from, to, ..trials.clone() }), here.is_some()));
-            from = to;
-        }
-        pieces
+        let failed: Vec<(&Trials, u32)> = (self.0.iter())
+            .filter_map(|(known, times)| match known {
+                Unit::Trials(known) => Some((known, *times)),
+                Unit::Run(_) => None,
+            })
+            .filter(|(known, _)| (known.world, known.advice) == (trials.world, trials.advice))
+            .collect();
+        let mut ends: Vec<u64> = failed.iter().flat_map(|(known, _)| [known.from, known.to]).collect();
+        ends.retain(|end| (trials.from + 1..trials.to).contains(end));
+        ends.extend([trials.from, trials.to]);
+        ends.sort_unstable();
+        let piece = |ends: &[u64]| {
+            let (from, to) = (ends[0], ends[1]);
+            let around = failed.iter().filter(|(known, _)| known.from <= from && to <= known.to);
+            let times = around.map(|(_, times)| *times).max().unwrap_or(0);
+            let unit = Unit::Trials(Trials { from, to, ..trials.clone() });
+            (times < MOST_ATTEMPTS).then_some((unit, times > 0))
+        };
+        ends.dedup();
+        ends.windows(2).map_while(piece).collect()
     }
 }
 

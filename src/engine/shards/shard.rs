@@ -31,10 +31,7 @@ pub fn run(
     let mut bodies = Vec::with_capacity(units.len());
     let mut last: Option<PreparedWorld> = None;
     for unit in units {
-        let (world, columns) = match unit {
-            Unit::Trials(trials) => (trials.world, trials.columns.as_slice()),
-            Unit::Run(run) => (run.world, run.columns.as_slice()),
-        };
+        let (world, columns) = (unit.world(), unit.columns());
         let known = last.take().filter(|prepared| prepared.number == Some(world));
         let prepared = known
             .or_else(|| PreparedWorld::of(study, world, plan.origin.seed, drivers))

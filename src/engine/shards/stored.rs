@@ -7,7 +7,7 @@ use crate::engine::cell::{Cell, Item};
 use crate::engine::executor::{Cells, Executor, Job, Threads};
 use crate::engine::splitting::{RunRecord, SplitRun};
 use crate::logic::Invalid;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -24,11 +24,15 @@ struct Piece {
     unit: usize,
 }
 
+impl Piece {
+    /// Whether it has the columns of a job.
+    fn has(&self, job: &Job<'_>) -> bool {
+        job.columns.iter().all(|one| self.trials.columns.contains(one))
+    }
+}
+
 /// Reads a part again, if it is still what it was.
 pub type Reread<'r> = &'r (dyn Fn(usize) -> Option<Part> + Sync);
-
-/// Parts that were read last, with their places.
-type Recent = VecDeque<(usize, Option<Arc<Part>>)>;
 
 /// Outcomes of parts.
 pub struct Stored<'r> {
@@ -37,7 +41,8 @@ pub struct Stored<'r> {
     /// The units of trials of each world and option, by their first trials.
     pieces: BTreeMap<(usize, Option<(usize, usize)>), Vec<Piece>>,
     runs: Vec<(SplitRun, usize, usize)>,
-    recent: Mutex<Recent>,
+    /// Parts that were read last, by their places.
+    recent: Mutex<BTreeMap<usize, Option<Arc<Part>>>>,
     wanted: Mutex<Vec<Unit>>,
 }
 
@@ -94,24 +99,17 @@ impl<'r> Stored<'r> {
     /// A part, which is kept for a while.
     fn part(&self, place: usize) -> Option<Arc<Part>> {
         let mut recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(at) = recent.iter().position(|(known, _)| *known == place) {
-            let entry = recent.remove(at)?;
-            recent.push_front(entry.clone());
-            return entry.1;
+        if recent.len() >= KEPT && !recent.contains_key(&place) {
+            recent.clear();
         }
-        let part = (self.reread)(place).map(Arc::new);
-        recent.push_front((place, part.clone()));
-        recent.truncate(KEPT);
-        part
+        recent.entry(place).or_insert_with(|| (self.reread)(place).map(Arc::new)).clone()
     }
 
     /// The piece that has a trial and all of some columns.
     fn piece(&self, job: &Job<'_>, item: Item) -> Option<&Piece> {
         let pieces = self.pieces.get(&(job.prepared.number?, item.advice))?;
         let before = pieces.partition_point(|piece| piece.trials.from <= item.index);
-        pieces[..before].iter().rev().find(|piece| {
-            item.index < piece.trials.to && job.columns.iter().all(|one| piece.trials.columns.contains(one))
-        })
+        pieces[..before].iter().rev().find(|piece| item.index < piece.trials.to && piece.has(job))
     }
 }
 
@@ -157,26 +155,25 @@ impl Executor for Stored<'_> {
     fn request(&self, job: &Job<'_>, advice: Option<(usize, usize)>, trials: Range<u64>) -> bool {
         let Some(world) = job.prepared.number else { return false };
         let mut wanted = self.wanted.lock().unwrap_or_else(PoisonError::into_inner);
-        let (mut index, mut is_lacking) = (trials.start, false);
-        while index < trials.end {
-            if let Some(piece) = self.piece(job, Item { advice, index })
-                && self.part(piece.part).is_some()
-            {
-                index = piece.trials.to;
-                continue;
-            }
-            // Up to where another part begins.
-            let later = self.pieces.get(&(world, advice)).into_iter().flatten();
-            let later = later.map(|piece| piece.trials.from).filter(|from| *from > index).min();
-            let to = later.unwrap_or(u64::MAX).min(trials.end);
-            let unit = Unit::Trials(Trials { world, columns: job.columns.clone(), advice, from: index, to });
+        let (mut from, mut lacking) = (trials.start, None);
+        let mut request = |from: u64, to: u64| {
+            let unit = Unit::Trials(Trials { world, columns: job.columns.clone(), advice, from, to });
+            lacking = lacking.or(Some(from));
             if !wanted.contains(&unit) {
                 wanted.push(unit);
             }
-            is_lacking |= index == trials.start;
-            index = to;
+        };
+        let pieces = self.pieces.get(&(world, advice)).into_iter().flatten();
+        for piece in pieces.filter(|piece| piece.has(job) && self.part(piece.part).is_some()) {
+            if from < piece.trials.from.min(trials.end) {
+                request(from, piece.trials.from.min(trials.end));
+            }
+            from = from.max(piece.trials.to);
         }
-        is_lacking
+        if from < trials.end {
+            request(from, trials.end);
+        }
+        lacking == Some(trials.start)
     }
 
     fn record(&self, run: &SplitRun) -> Option<Option<RunRecord>> {

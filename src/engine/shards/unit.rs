@@ -29,6 +29,22 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// The number of its world.
+    pub const fn world(&self) -> usize {
+        match self {
+            Self::Trials(trials) => trials.world,
+            Self::Run(run) => run.world,
+        }
+    }
+
+    /// The columns that are observed.
+    pub(super) fn columns(&self) -> &[usize] {
+        match self {
+            Self::Trials(trials) => &trials.columns,
+            Self::Run(run) => &run.columns,
+        }
+    }
+
     /// How many trials it is worth, roughly.
     pub fn weight(&self) -> u64 {
         match self {
@@ -44,13 +60,6 @@ impl Unit {
         let starts = (trials.from..trials.to).step_by(usize::try_from(size).unwrap_or(usize::MAX));
         let to = |from: u64| from.saturating_add(size).min(trials.to);
         starts.map(|from| Self::Trials(Trials { from, to: to(from), ..trials.clone() })).collect()
-    }
-}
-
-impl Trials {
-    /// Whether both are of one table.
-    pub(super) fn is_beside(&self, other: &Self) -> bool {
-        (self.world, self.advice) == (other.world, other.advice)
     }
 }
 

@@ -7,7 +7,7 @@ mod path;
 mod paths;
 mod record;
 
-pub use record::{Generation, RunRecord, SplitRun};
+pub use record::{RunRecord, SplitRun};
 
 use super::budget::Budget;
 use super::cell::{Item, Reading};
@@ -17,7 +17,7 @@ use super::outcome::Stop;
 use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
 use super::tally::Tally;
-use super::watch::{Forecast, Likely, Watch};
+use super::watch::{Forecast, Likely, Nobody, Watch};
 use crate::base::random::TrialKey;
 use crate::compile::study::Query;
 use crate::stats::splitting::{Rule, Scheme, Spread, Start};
@@ -109,18 +109,19 @@ struct Running {
     scheme: Box<dyn Scheme>,
     branch: u16,
     paths: Vec<Path>,
-    generations: Vec<Generation>,
+    steps: u64,
+    lost: u64,
 }
 
 impl Running {
     fn new(run: &SplitRun, seed: u64) -> Result<Self, Fault> {
-        let scheme = run.scheme(seed)?;
-        Ok(Self { scheme, branch: run.branch, paths: Vec::new(), generations: Vec::new() })
+        Ok(Self { scheme: run.scheme(seed)?, branch: run.branch, paths: Vec::new(), steps: 0, lost: 0 })
     }
 
     fn record(self) -> RunRecord {
-        let Self { scheme, generations, .. } = self;
-        RunRecord { generations, estimate: scheme.estimate(), levels: scheme.levels().to_vec() }
+        let Self { scheme, paths, steps, lost, .. } = self;
+        let (estimate, levels) = (scheme.estimate(), scheme.levels().to_vec());
+        RunRecord { paths: paths.len() as u64, steps, lost, estimate, levels }
     }
 
     /// The paths that it wants.
@@ -270,10 +271,10 @@ impl Found {
         stop.is_none()
     }
 
-    fn count(&mut self, generation: Generation, lost_reaches: bool) {
-        self.paths += generation.paths;
-        self.steps += generation.steps;
-        self.lost += if lost_reaches { 0 } else { generation.lost };
+    fn count(&mut self, (paths, steps, lost): (u64, u64, u64), lost_reaches: bool) {
+        self.paths += paths;
+        self.steps += steps;
+        self.lost += if lost_reaches { 0 } else { lost };
     }
 }
 
@@ -294,60 +295,41 @@ fn advance(
             found.stop = budget.stopped_by();
             return Ok(None);
         };
-        // Where the model is wrong in a run, the runs are made here, to say what is wrong.
-        if let Some(records) = stored.into_iter().collect::<Option<Vec<RunRecord>>>() {
-            return Ok(recall(&records, runs, found, budget).then_some(records));
+        // Where the model is wrong in a run, or the budget ends runs on their way, they are made here.
+        if let Some(records) = stored.into_iter().collect::<Option<Vec<RunRecord>>>()
+            && found.admits(records.iter().map(|one| one.paths).sum(), budget)
+        {
+            let count = |one: &RunRecord| found.count((one.paths, one.steps, one.lost), runs[0].lost_reaches);
+            records.iter().for_each(count);
+            return Ok(Some(records));
         }
     }
-    let mut counted = |found: &Found| {
-        watch.consumed(&query.text, found.plain.counts.trials + found.paths, None);
-    };
-    let (records, finished) = make(batches, runs, seed, found, executor, budget, &mut counted)?;
-    Ok(finished.then_some(records))
+    make(batches, runs, (&query.text, seed), found, executor, budget, watch)
 }
 
-/// Counts runs as if they were made side by side; whether all of them came to an end.
-fn recall(records: &[RunRecord], runs: &[SplitRun], found: &mut Found, budget: &Budget) -> bool {
-    for k in 0.. {
-        let together: Vec<Generation> =
-            records.iter().filter_map(|one| one.generations.get(k).copied()).collect();
-        if together.is_empty() {
-            break;
-        }
-        if !found.admits(together.iter().map(|one| one.paths).sum(), budget) {
-            return false;
-        }
-        together.into_iter().for_each(|one| found.count(one, runs[0].lost_reaches));
-    }
-    true
-}
-
-/// Makes runs side by side, and whether all of them came to an end.
+/// Makes runs side by side; `None` if not all of them came to an end.
 fn make(
     batches: &Batches<'_>,
     runs: &[SplitRun],
-    seed: u64,
+    (query, seed): (&str, u64),
     found: &mut Found,
     executor: &dyn Executor,
     budget: &Budget,
-    counted: &mut dyn FnMut(&Found),
-) -> Result<(Vec<RunRecord>, bool), Fault> {
+    watch: &dyn Watch,
+) -> Result<Option<Vec<RunRecord>>, Fault> {
     let mut running = runs.iter().map(|run| Running::new(run, seed)).collect::<Result<Vec<_>, _>>()?;
-    let finished = loop {
+    loop {
         let paths: Vec<Vec<Path>> = running.iter_mut().map(|run| run.wanted(seed)).collect();
         let together: Vec<Path> = paths.iter().flatten().cloned().collect();
         if together.is_empty() {
-            break true;
+            return Ok(Some(running.into_iter().map(Running::record).collect()));
         }
         if !found.admits(together.len() as u64, budget) {
-            for (run, wanted) in running.iter_mut().zip(&paths).filter(|(_, wanted)| !wanted.is_empty()) {
-                run.generations.push(Generation { paths: wanted.len() as u64, ..Generation::default() });
-            }
-            break false;
+            return Ok(None);
         }
         let Some(ended) = batches.run(&together, executor, budget)? else {
             found.stop = budget.stopped_by();
-            break false;
+            return Ok(None);
         };
         let mut ended = ended.into_iter();
         for ((run, of), wanted) in running.iter_mut().zip(runs).zip(&paths) {
@@ -355,21 +337,18 @@ fn make(
             if own.is_empty() {
                 continue;
             }
-            let generation = Generation {
-                paths: own.len() as u64,
-                steps: own.iter().map(|one| one.steps).sum(),
-                lost: own.iter().filter(|one| one.lost).count() as u64,
-            };
-            found.count(generation, of.lost_reaches);
-            run.generations.push(generation);
+            let steps = own.iter().map(|one| one.steps).sum();
+            let lost = own.iter().filter(|one| one.lost).count() as u64;
+            found.count((own.len() as u64, steps, lost), of.lost_reaches);
+            run.steps += steps;
+            run.lost += lost;
             run.scheme.feed(own.into_iter().map(|one| one.read(of.lost_reaches)).collect());
         }
-        counted(found);
-    };
-    Ok((running.into_iter().map(Running::record).collect(), finished))
+        watch.consumed(query, found.plain.counts.trials + found.paths, None);
+    }
 }
 
-/// Makes one run on its own; `None` where the model is wrong in it.
+/// Makes one run on its own; `None` where the model is wrong in it, or the budget ends it.
 ///
 /// # Errors
 /// For columns that no monitor can watch, and rules that no procedure accepts.
@@ -382,9 +361,8 @@ pub(super) fn record(
     let batches = Batches::new(prepared, run.columns);
     let interval = clopper_pearson::interval(Counts::default(), DISAGREEMENT);
     let mut found = Found::new(Tally::default(), 1.0, interval);
-    match make(&batches, std::slice::from_ref(run), seed, &mut found, executor, budget, &mut |_| {}) {
-        Ok((records, _)) => Ok(records.into_iter().next()),
+    match make(&batches, std::slice::from_ref(run), ("", seed), &mut found, executor, budget, &Nobody) {
         Err(Fault::Model(_)) => Ok(None),
-        Err(fault) => Err(fault),
+        made => Ok(made?.and_then(|mut records| records.pop())),
     }
 }

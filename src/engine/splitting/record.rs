@@ -1,6 +1,4 @@
-//! A run of splitting as a unit of work, and what is kept of it. A run is a function of the model, the seed and these
-//! numbers, so it can be made anywhere; what it consumed is kept generation by generation, because runs go on side by side
-//! and `--max-trials` may end them between two generations.
+//! A run of splitting as a unit of work: a function of the model, the seed and these numbers, so it can be made anywhere.
 
 use crate::stats::Invalid;
 use crate::stats::splitting::{Adaptive, Effort, Rule, Scheme};
@@ -23,22 +21,15 @@ pub struct SplitRun {
     pub levels: Vec<f64>,
 }
 
-/// What a run consumed between two looks at its levels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Generation {
-    /// Paths.
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunRecord {
+    /// Its paths.
     pub paths: u64,
     /// Steps of them.
     pub steps: u64,
     /// Paths that diverged.
     pub lost: u64,
-}
-
-/// What a run came to.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RunRecord {
-    /// What it consumed. Where `--max-trials` ended it, the last entry is the generation that was not run.
-    pub generations: Vec<Generation>,
     /// Its estimate.
     pub estimate: f64,
     /// Its levels.
