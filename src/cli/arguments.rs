@@ -149,7 +149,7 @@ pub(super) struct Check {
     /// Only forecast the number of trials and the time of each query; runs the first few trials.
     #[arg(long, conflicts_with_all = ["timeout", "report", "launch"])]
     pub(super) forecast: bool,
-    /// Run the trials in shards: `local` (processes), `hq` (HyperQueue), `slurm`, `k8s` (prints a job for Kubernetes), or a
+    /// Run the trials in shards: `local` (processes), `hq` (`HyperQueue`), `slurm`, `k8s` (prints a job for Kubernetes), or a
     /// command in which `{shard}`, `{count}`, `{last}`, `{plan}` and `{parts}` are replaced. Never changes a result.
     #[arg(long, value_name = "ENGINE|COMMAND")]
     pub(super) launch: Option<String>,

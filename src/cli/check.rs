@@ -28,9 +28,6 @@ use crate::syntax::source::{Source, Span};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Most shards of a round, unless set, where they run elsewhere.
-const SHARDS: usize = 100;
-
 /// Where outcomes come from: trials that are run or launched, or the parts in a folder.
 pub(super) enum Way<'a> {
     Check(&'a Check),
@@ -120,7 +117,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         let run = run_study(study, &call(), &executor, &budget, &progress);
         run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
-        let default = if launch == Some("local") { threads } else { SHARDS };
+        let default = if launch == Some("local") { threads } else { 100 };
         let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
         let mut rounds = Rounds {
             study,

@@ -1,7 +1,7 @@
 //! Launchers: how the shards of a round are started. Each is a line for the shell that returns when the shards are over; the
 //! queue that it talks to keeps order, repeats and accounts.
 
-use super::parts::PartsFolder;
+use super::parts::{PartsFolder, bytes};
 use super::{complaint, output};
 use crate::engine::shards::Plan;
 use crate::engine::{Budget, CommandLine, quoted};
@@ -86,35 +86,30 @@ impl Launcher<'_> {
         let command = self.fill(line, folder, plan, &script);
         let log = folder.path.join("launcher.log");
         let failed = |reason: String| {
-            let said = std::fs::read_to_string(&log).unwrap_or_default();
+            let said = bytes(&log).unwrap_or_default();
+            let said = String::from_utf8_lossy(&said);
             let said = said.lines().last().map_or(String::new(), |last| format!(": {last}"));
             Diagnostic::placeless(Code::E0725, format!("the launcher `{command}` {reason}{said}"))
                 .hint("see `smc explain E0725` for the launchers; parts that are there are used when you call again")
         };
-        let unwritten = |error: std::io::Error| complaint::unwritten(&log, &error);
-        let out = File::create(&log).map_err(unwritten)?;
-        let err = out.try_clone().map_err(unwritten)?;
+        let out = File::options().write(true).create(true).truncate(true).open(&log);
+        let out = out.map_err(|error| complaint::unwritten(&log, &error))?;
         let mut shell = Command::new("sh");
-        shell.args(["-c", &command]).stdin(Stdio::null()).stdout(out).stderr(err);
+        shell.arg("-c").arg(format!("exec 2>&1\n{command}")).stdin(Stdio::null()).stdout(out);
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut shell, 0);
         let mut child = shell.spawn().map_err(|error| failed(format!("cannot be started: {error}")))?;
         let done = || plan.shards.len() - folder.missing(plan).len();
-        let status = loop {
+        loop {
             match child.try_wait() {
-                Ok(None) if budget.must_stop() => {
-                    end(&mut child);
-                    return Ok(());
-                }
+                Ok(None) if budget.must_stop() => break end(&mut child),
                 Ok(None) => {}
-                Ok(Some(status)) => break status,
+                Ok(Some(status)) if status.success() || done() > 0 => break,
+                Ok(Some(status)) => return Err(failed(format!("failed ({status})"))),
                 Err(error) => return Err(failed(format!("cannot be waited for: {error}"))),
             }
             told(done());
             std::thread::sleep(LOOK);
-        };
-        if !status.success() && done() == 0 {
-            return Err(failed(format!("failed ({status})")));
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use super::parts::{self, PartsFolder};
 use super::progress::Progress;
 use super::terminal::print;
 use crate::compile::Study;
-use crate::engine::outcome::{CallResult, Stop};
+use crate::engine::outcome::{CallResult, QueryResult, Stop};
 use crate::engine::shards::{Attempts, Origin, Plan, Stored, Unit};
 use crate::engine::{Budget, Call, Threads, run as run_study};
 use crate::library;
@@ -38,14 +38,19 @@ impl Rounds<'_> {
     ) -> Result<Option<CallResult>, Vec<Diagnostic>> {
         let one = |error| vec![error];
         let mut attempts = Attempts::default();
+        // Witnesses of many results are looked for once.
+        self.call.explains = launcher.is_none() || self.study.queries.len() <= 64;
         loop {
             let before = folder.plan(&self.origin).map_err(one)?;
             (self.warn)(&folder.scan(&self.origin, before.as_ref()).map_err(one)?);
-            self.call.explains = launcher.is_none();
             let (run, wanted) = self.read(folder)?;
             let shards = Plan::deal(&wanted, &attempts, self.shards, folder.pace());
             if launcher.is_some() && (shards.is_empty() || self.budget.must_stop()) {
-                return self.finish(folder, &attempts).map(Some);
+                if self.call.explains {
+                    return Ok(Some(self.finish(run, &attempts)));
+                }
+                self.call.explains = true;
+                continue;
             }
             if shards.is_empty() {
                 return Ok(Some(run));
@@ -63,27 +68,25 @@ impl Rounds<'_> {
                 return Ok(None);
             }
             let known = run.results.iter().find(|result| result.stopped_by.is_early());
-            let known = known.map_or(String::new(), |one| {
-                one.estimate.map_or(String::new(), |x| format!(" · {} so far: {}", one.asked.text, brief(x)))
-            });
+            let so_far =
+                |one: &QueryResult| Some(format!(" · {} so far: {}", one.asked.text, brief(one.estimate?)));
+            let known = known.and_then(so_far).unwrap_or_default();
             let (count, failed) = (plan.shards.len(), attempts.0.len());
             let told = |done: usize| {
-                let open = count - done;
-                self.progress.shards(&format!("round {round}: {done} of {count} shards done, {open} running or waiting, {failed} failed{known}"));
+                let counts = format!("{done} of {count} shards done, {} running or waiting", count - done);
+                self.progress.shards(&format!("round {round}: {counts}, {failed} failed{known}"));
             };
             launcher.launch(folder, &plan, self.budget, &told).map_err(one)?;
             if !self.budget.must_stop() {
                 let missing = folder.missing(&plan);
                 (self.warn)(&parts::lost(&missing));
-                missing.into_iter().for_each(|units| attempts.fail(units));
+                attempts.fail(&missing);
             }
         }
     }
 
-    /// The results of what is there, with witnesses.
-    fn finish(&mut self, folder: &PartsFolder, attempts: &Attempts) -> Result<CallResult, Vec<Diagnostic>> {
-        self.call.explains = true;
-        let (mut run, _) = self.read(folder)?;
+    /// The results of what is there: why they are not more.
+    fn finish(&self, mut run: CallResult, attempts: &Attempts) -> CallResult {
         (run.interrupted, run.elapsed_s) = (self.budget.is_interrupted(), self.budget.elapsed());
         if self.budget.must_stop() {
             let early = run.results.iter_mut().filter(|result| result.stopped_by == Stop::Missing);
@@ -91,7 +94,7 @@ impl Rounds<'_> {
         } else if let given_up @ [_, ..] = attempts.given_up().as_slice() {
             run.warnings.push(format!("no shard brought these back: {}", parts::words(given_up)));
         }
-        Ok(run)
+        run
     }
 
     /// Reads all parts; what is lacking.

@@ -27,14 +27,20 @@ pub(super) fn name(round: u64, index: usize) -> String {
     format!("{round:04}-{index:06}.part")
 }
 
+/// Bytes of a file of the folder.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn bytes(file: &Path) -> Result<Vec<u8>, Error> {
+    std::fs::read(file)
+}
+
 /// Reads a plan.
 pub(super) fn read_plan(path: &Path) -> Result<Plan, Diagnostic> {
     let wrong = |reason: String| {
         Diagnostic::placeless(Code::E0724, format!("the plan `{}` {reason}", path.display()))
             .hint("write the plan again: `smc merge` does with the folder of its parts")
     };
-    let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
-    serde_json::from_slice(&bytes).map_err(|error| wrong(format!("is damaged: {error}")))
+    let found = bytes(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    serde_json::from_slice(&found).map_err(|error| wrong(format!("is damaged: {error}")))
 }
 
 /// An error if a file belongs to another call.
@@ -46,8 +52,7 @@ pub(super) fn same_origin(path: &Path, own: &Origin, found: &Origin) -> Result<(
 }
 
 fn warning(title: String) -> Diagnostic {
-    let warning = Diagnostic::placeless(Code::W0722, title);
-    Diagnostic { severity: Severity::Warning, ..warning }
+    Diagnostic { severity: Severity::Warning, ..Diagnostic::placeless(Code::W0722, title) }
 }
 
 /// Units in words.
@@ -107,9 +112,9 @@ impl PartsFolder {
         let files = self.files().map_err(|error| unread(&self.path, &error))?;
         let mut warnings = Vec::new();
         for file in files.difference(&self.seen.clone()) {
-            let bytes = std::fs::read(file).map_err(|error| unread(file, &error))?;
+            let found = bytes(file).map_err(|error| unread(file, &error))?;
             self.seen.insert(file.clone());
-            match Head::read(&bytes) {
+            match Head::read(&found) {
                 Ok(head) => {
                     same_origin(file, own, &head.origin)?;
                     self.parts.push((file.clone(), head));
@@ -142,7 +147,7 @@ impl PartsFolder {
     /// Reads a part again; none if it has changed since.
     pub(super) fn reread(&self, part: usize) -> Option<Part> {
         let (file, head) = &self.parts[part];
-        let part = Part::read(&std::fs::read(file).ok()?).ok()?;
+        let part = Part::read(&bytes(file).ok()?).ok()?;
         (part.head == *head).then_some(part)
     }
 

@@ -458,7 +458,7 @@ fn gnu_parallel_runs_the_shards() {
     assert_eq!(report(&led), report(&alone), "{}", led.err);
 }
 
-/// A Python that has the wheel of HyperQueue: that of `SMC_HQ_PYTHON`, or else `python3`.
+/// A Python that has the wheel of `HyperQueue`: that of `SMC_HQ_PYTHON`, or else `python3`.
 fn hyperqueue() -> Option<String> {
     let python = std::env::var("SMC_HQ_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let found = Command::new(&python).args(["-c", "import hyperqueue"]).stderr(Stdio::null()).status();

@@ -16,7 +16,7 @@ mod unit;
 pub use part::{Body, Damaged, Head, Part};
 pub use plan::{Attempts, Plan};
 pub use shard::run;
-pub use stored::{Reread, Stored};
+pub use stored::Stored;
 pub use table::Table;
 pub use unit::{Trials, Unit};
 

@@ -30,9 +30,9 @@ pub struct Plan {
 pub struct Attempts(pub Vec<(Unit, u32)>);
 
 impl Attempts {
-    /// A shard did not bring these back.
-    pub fn fail(&mut self, units: &[Unit]) {
-        for unit in units {
+    /// Shards did not bring these back.
+    pub fn fail(&mut self, shards: &[&[Unit]]) {
+        for unit in shards.iter().copied().flatten() {
             match self.0.iter_mut().find(|(known, _)| known == unit) {
                 Some((_, times)) => *times += 1,
                 None => self.0.push((unit.clone(), 1)),

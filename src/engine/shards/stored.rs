@@ -31,15 +31,15 @@ impl Piece {
     }
 }
 
-/// Reads a part again, if it is still what it was.
-pub type Reread<'r> = &'r (dyn Fn(usize) -> Option<Part> + Sync);
+/// World, and option if one is followed.
+type Key = (usize, Option<(usize, usize)>);
 
 /// Outcomes of parts.
 pub struct Stored<'r> {
     threads: &'r Threads,
-    reread: Reread<'r>,
+    reread: &'r (dyn Fn(usize) -> Option<Part> + Sync),
     /// The units of trials of each world and option, by their first trials.
-    pieces: BTreeMap<(usize, Option<(usize, usize)>), Vec<Piece>>,
+    pieces: BTreeMap<Key, Vec<Piece>>,
     runs: Vec<(SplitRun, usize, usize)>,
     /// Parts that were read last, by their places.
     recent: Mutex<BTreeMap<usize, Option<Arc<Part>>>>,
@@ -53,7 +53,7 @@ impl<'r> Stored<'r> {
     /// If two parts, here with their places, say different things of a unit.
     pub fn new(
         heads: &[&Head],
-        reread: Reread<'r>,
+        reread: &'r (dyn Fn(usize) -> Option<Part> + Sync),
         threads: &'r Threads,
     ) -> Result<Self, ([usize; 2], Unit)> {
         let mut stored = Self {
