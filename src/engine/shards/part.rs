@@ -105,3 +105,65 @@ fn split(bytes: &[u8]) -> Result<(Head, &[u8]), Damaged> {
     }
     postcard::take_from_bytes(&bytes[FORMAT.len()..]).map_err(|_| UNFIT)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::cell::{Cell, Reading};
+    use crate::engine::shards::Trials;
+    use proptest::prelude::*;
+
+    fn part() -> Part {
+        let cells: Vec<Cell> =
+            (0..100).map(|k| Cell { reading: Reading::Truth(k % 3 == 0), steps: k, ..Cell::BLANK }).collect();
+        let mut table = Table::new(1);
+        table.push(&cells);
+        let trials = Trials { world: 0, columns: vec![2], advice: None, from: 50, to: 150 };
+        let record = RunRecord { paths: 1, steps: 2, lost: 0, estimate: 0.5, levels: vec![f64::INFINITY] };
+        let origin = Origin { version: "1".to_owned(), print: "p".to_owned(), seed: 3 };
+        let run = crate::engine::splitting::SplitRun {
+            world: 1,
+            columns: [0, 1],
+            rule: crate::stats::splitting::Rule {
+                adaptive: true,
+                replicas: 2,
+                runs: 3,
+                kill: 1,
+                plain: 5,
+                delta: 0.1,
+            },
+            branch: 1,
+            lost_reaches: false,
+            levels: vec![0.1],
+        };
+        let head = Head { origin, seconds: 1.5, units: vec![Unit::Trials(trials), Unit::Run(run)] };
+        Part { head, bodies: vec![Body::Trials(table), Body::Run(Some(record))] }
+    }
+
+    #[test]
+    fn a_part_comes_back() {
+        let bytes = part().bytes().unwrap();
+        let read = Part::read(&bytes).unwrap();
+        assert_eq!(read.head, part().head);
+        let Body::Trials(table) = &read.bodies[0] else { panic!() };
+        assert_eq!((table.cell(9, 0).reading, table.cell(9, 0).steps), (Reading::Truth(true), 9));
+        assert_eq!(read.bodies[1], part().bodies[1]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        #[test]
+        fn any_change_is_noticed_and_any_contents_are_read_or_refused(at: prop::sample::Index, to: u8, cut: prop::sample::Index) {
+            let good = part().bytes().unwrap();
+            let mut bytes = good.clone();
+            bytes[at.index(good.len())] = to;
+            prop_assert!(bytes == good || Part::read(&bytes).is_err());
+            prop_assert!(Part::read(&good[..cut.index(good.len())]).is_err());
+            // With a checksum that matches.
+            let end = bytes.len() - CHECK;
+            let check = crc32fast::hash(&bytes[..end]).to_le_bytes();
+            bytes[end..].copy_from_slice(&check);
+            let _ = Part::read(&bytes);
+        }
+    }
+}
