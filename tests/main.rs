@@ -51,6 +51,7 @@ mod runs;
 mod seen;
 mod semantics;
 mod shapes;
+mod shards;
 mod signal_semantics;
 mod splitting;
 mod start;
