@@ -31,6 +31,9 @@ pub(crate) struct Person {
     pub k1: f64,
     pub k2: f64,
     pub noise: f64,
+    pub foresight: f64,
+    pub headway: f64,
+    pub hold: f64,
     pub present: bool,
     pub particle: Option<Particle>,
 }
@@ -57,6 +60,9 @@ pub(crate) fn person(at: Vec2) -> Person {
         k1: 1.2e5,
         k2: 2.4e5,
         noise: 0.0,
+        foresight: 0.0,
+        headway: 0.0,
+        hold: 0.0,
         present: true,
         particle: None,
     }
@@ -79,6 +85,9 @@ impl Person {
             Parameter::K1 => self.k1,
             Parameter::K2 => self.k2,
             Parameter::Noise => self.noise,
+            Parameter::Foresight => self.foresight,
+            Parameter::Headway => self.headway,
+            Parameter::Hold => self.hold,
             Parameter::Attention => 1.0,
             // Of plans: 2 is a value that each of them may have.
             _ => 2.0,

@@ -228,6 +228,7 @@ impl Lanewise {
                 let (x, y, r) = (part.load(&agent.x), part.load(&agent.y), part.load(&agent.r));
                 let own = load::<S, T>(part, kept, i);
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
+                let mut slowness = part.load(&sums[i].slowness);
                 for &j in &self.neighbours.others[first[i] as usize..first[i + 1] as usize] {
                     let other = &agents[j as usize];
                     let way = (x - part.load(&other.x), y - part.load(&other.y));
@@ -236,15 +237,23 @@ impl Lanewise {
                     if touching.any_true() {
                         contacts.push_pair(i as u32, j, part.bits(touching));
                     }
-                    let (on_i, on_j) = term.force(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
-                    fx += on_i * pair.dx;
-                    fy += on_i * pair.dy;
+                    let push = term.push(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
+                    fx += push.one.0;
+                    fy += push.one.1;
                     let sum = &mut sums[j as usize];
-                    part.store(part.load(&sum.x) - on_j * pair.dx, &mut sum.x);
-                    part.store(part.load(&sum.y) - on_j * pair.dy, &mut sum.y);
+                    part.store(part.load(&sum.x) - push.other.0, &mut sum.x);
+                    part.store(part.load(&sum.y) - push.other.1, &mut sum.y);
+                    if T::KEEPS_HEADWAY {
+                        slowness = larger::<S>(push.slowness_of_one, slowness);
+                        let most = larger::<S>(push.slowness_of_other, part.load(&sum.slowness));
+                        part.store(most, &mut sum.slowness);
+                    }
                 }
                 part.store(fx, &mut sums[i].x);
                 part.store(fy, &mut sums[i].y);
+                if T::KEEPS_HEADWAY {
+                    part.store(slowness, &mut sums[i].slowness);
+                }
             }
         }
     }

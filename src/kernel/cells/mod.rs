@@ -34,6 +34,8 @@ pub(super) struct Cells {
     /// The forces.
     fx: Vec<f64>,
     fy: Vec<f64>,
+    /// The slowness that those ahead impose; empty where nobody keeps a headway.
+    slowness: Vec<f64>,
     /// Of one strip: the vectors of neighbours, and the sums of its agents over eight lanes.
     tasks: Vec<Task>,
     touches: Vec<Touch>,
@@ -109,6 +111,9 @@ impl Cells {
                 let sum = &mut sums[agent / LANES];
                 sum.x.0[agent % LANES] = self.fx[at];
                 sum.y.0[agent % LANES] = self.fy[at];
+                if let Some(slowness) = self.slowness.get(at) {
+                    sum.slowness.0[agent % LANES] = *slowness;
+                }
             }
         }
     }
@@ -121,6 +126,8 @@ impl Cells {
             field.clear();
             field.resize(total, 0.0);
         }
+        self.slowness.clear();
+        self.slowness.resize(if T::KEEPS_HEADWAY { total } else { 0 }, 0.0);
         self.columns.resize_with(T::COUNT, Vec::new);
         for column in &mut self.columns {
             column.resize(total, 0.0);

@@ -10,7 +10,7 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::force::pair::{Pair, PairTerm, Sum};
 use crate::kernel::near::low_bits;
-use crate::kernel::vector::{first_part, parts, width};
+use crate::kernel::vector::{first_part, larger, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -58,6 +58,10 @@ impl Cells {
             for (k, sum) in self.own.iter().enumerate() {
                 self.fx[from + k] += total(&sum.x);
                 self.fy[from + k] += total(&sum.y);
+                if T::KEEPS_HEADWAY {
+                    let slowness = &mut self.slowness[from + k];
+                    *slowness = sum.slowness.0.iter().fold(*slowness, |a, &b| if b > a { b } else { a });
+                }
             }
         }
     }
@@ -120,6 +124,7 @@ impl Cells {
         // Of one length, so that one comparison shows that all are long enough.
         let (xs, ys, rs) = (&self.index.x[..length], &self.index.y[..length], &self.index.r[..length]);
         let (fx, fy) = (&mut self.fx[..length], &mut self.fy[..length]);
+        let slownesses = self.slowness.as_mut_slice();
         let columns = T::load(
             #[inline(always)]
             |k| &self.columns[k][..length],
@@ -144,13 +149,19 @@ impl Cells {
                 #[inline(always)]
                 |column| part.slice(&column[j..j + LANES]),
             );
-            let (on_i, on_j) = term.force(part, &pair, &one, &others);
-            part.take(on_j * dx, &mut fx[j..j + LANES]);
-            part.take(on_j * dy, &mut fy[j..j + LANES]);
+            let push = term.push(part, &pair, &one, &others);
+            part.take(push.other.0, &mut fx[j..j + LANES]);
+            part.take(push.other.1, &mut fy[j..j + LANES]);
             let (sum, lane) = (&mut self.own[task.one as usize], task.lane as usize);
             let (sum_x, sum_y) = (&mut sum.x.0[lane..], &mut sum.y.0[lane..]);
-            part.put(part.slice(sum_x) + on_i * dx, sum_x);
-            part.put(part.slice(sum_y) + on_i * dy, sum_y);
+            part.put(part.slice(sum_x) + push.one.0, sum_x);
+            part.put(part.slice(sum_y) + push.one.1, sum_y);
+            if T::KEEPS_HEADWAY {
+                let most = &mut slownesses[j..j + LANES];
+                part.put(larger::<S>(push.slowness_of_other, part.slice(most)), most);
+                let most = &mut sum.slowness.0[lane..];
+                part.put(larger::<S>(push.slowness_of_one, part.slice(most)), most);
+            }
         }
         found
     }
