@@ -16,7 +16,7 @@ pub const PRESETS: [Preset; 2] = [
         name: "smc1",
         source: "this project's own, fitted in this order to Weidmann's fundamental diagram of one stream, to flows at doors \
                  of 0.8 to 2.4 m, to the clearance of head-on pairs in the recording eth, and to counterflow: \
-                 isotropic, A = 140 N, B = 0.35 m, foresight 1.5 s, headway 0.6 s, tau = 0.25 s, radii 0.18 to 0.22 m; \
+                 isotropic, A = 140 N, B = 0.35 m, foresight 1.5 s, headway 0.65 s, tau = 0.25 s, radii 0.18 to 0.22 m; \
                  mass, driving speeds and contact of helbing2000",
     },
     Preset {
@@ -31,7 +31,7 @@ pub const PRESETS: [Preset; 2] = [
 pub fn law(preset: &str, parameter: Parameter) -> Option<Law> {
     use Parameter::{A, B, Foresight, Headway, K1, K2, Mass, Radius, Speed, Tau};
     let (radii, special): ((f64, f64), &[(Parameter, f64)]) = match preset {
-        "smc1" => ((0.18, 0.22), &[(A, 140.0), (B, 0.35), (Foresight, 1.5), (Headway, 0.6), (Tau, 0.25)]),
+        "smc1" => ((0.18, 0.22), &[(A, 140.0), (B, 0.35), (Foresight, 1.5), (Headway, 0.65), (Tau, 0.25)]),
         "helbing2000" => ((0.25, 0.35), &[(A, 2000.0), (B, 0.08), (Tau, 0.5)]),
         _ => return None,
     };

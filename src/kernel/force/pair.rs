@@ -63,7 +63,7 @@ pub(in crate::kernel) struct Pair<S: Simd> {
     pub(in crate::kernel) dx: Doubles<S>,
     pub(in crate::kernel) dy: Doubles<S>,
     /// Its length, and one over that.
-    pub(super) distance: Doubles<S>,
+    pub(in crate::kernel) distance: Doubles<S>,
     pub(super) inverse: Doubles<S>,
     /// How deep they overlap, m; minus infinity where one is absent.
     pub(in crate::kernel) gap: Doubles<S>,
