@@ -13,17 +13,17 @@ pub struct Preset {
 /// All presets.
 pub const PRESETS: [Preset; 2] = [
     Preset {
+        name: "helbing2000",
+        source: "Helbing, Farkas, Vicsek, Nature 407, 487 (2000): isotropic, A = 2000 N, B = 0.08 m, \
+                 k1 = 1.2e5 kg/s^2, k2 = 2.4e5 kg/(m s), tau = 0.5 s, 80 kg, diameters 0.5 to 0.7 m; driving speeds \
+                 N(1.34, 0.26) m/s of Helbing and Molnár 1995",
+    },
+    Preset {
         name: "smc1",
         source: "this project's own, fitted in this order to Weidmann's fundamental diagram of one stream, to flows at doors \
                  of 0.8 to 2.4 m, to the clearance of head-on pairs in the recording eth, and to counterflow: \
                  isotropic, A = 140 N, B = 0.35 m, foresight 1.5 s, headway 0.65 s, tau = 0.25 s, radii 0.18 to 0.22 m; \
                  mass, driving speeds and contact of helbing2000",
-    },
-    Preset {
-        name: "helbing2000",
-        source: "Helbing, Farkas, Vicsek, Nature 407, 487 (2000): isotropic, A = 2000 N, B = 0.08 m, \
-                 k1 = 1.2e5 kg/s^2, k2 = 2.4e5 kg/(m s), tau = 0.5 s, 80 kg, diameters 0.5 to 0.7 m; driving speeds \
-                 N(1.34, 0.26) m/s of Helbing and Molnár 1995",
     },
 ];
 

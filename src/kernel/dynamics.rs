@@ -327,7 +327,8 @@ impl Mover<'_> {
         };
         let (mut wish_x, mut wish_y) =
             (drive * part.load(&state.driving.ex[block]), drive * part.load(&state.driving.ey[block]));
-        let stands = speed.simd_eq(part.c(0.0));
+        // Who moves by themselves (decay 1) has no place to hold.
+        let stands = speed.simd_eq(part.c(0.0)) & decay.simd_lt(part.c(1.0));
         if stands.any_true() {
             let (back_x, back_y) = back(part, state, block, (vx, vy));
             (wish_x, wish_y) = (stands.select(back_x, wish_x), stands.select(back_y, wish_y));

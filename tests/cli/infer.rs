@@ -143,7 +143,7 @@ fn bad_options_of_motion_are_refused() {
         ),
         (
             &["--scene", "scene.scn", "--kind", "stepper"],
-            &["no force moves agents of the kind `stepper`", "slim, smc1, helbing2000"],
+            &["no force moves agents of the kind `stepper`", "slim, helbing2000, smc1"],
         ),
         (&["--scene", "broken.scn"], &["error[E0303]", "broken.scn:3:15"]),
         (&["--scene", "missing.scn"], &["error[E0701]", "does not exist"]),

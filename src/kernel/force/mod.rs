@@ -113,12 +113,20 @@ impl Forces {
         let first_range = shared_constant(scenario, |body| &body[Parameter::B]).filter(|_| same);
         let second_range =
             if second { shared_constant(scenario, |body| &body[Parameter::B2]) } else { Some(1.0) };
-        let looks = |parameter| {
-            let has = |agent: &Agent| agent.body[parameter].constant() != Some(0.0);
-            changed(parameter) || scenario.agents.iter().any(has)
+        let constant = |agent: &Agent, parameter: Parameter| {
+            let has = parameter.description().kinds.contains(&agent.body.kind);
+            if has { agent.body[parameter].constant() } else { Some(0.0) }
         };
-        let same = shared_constant(scenario, |body| &body[Parameter::Foresight]).is_some()
-            && !changed(Parameter::Foresight);
+        let looks = |parameter| {
+            changed(parameter) || scenario.agents.iter().any(|agent| constant(agent, parameter) != Some(0.0))
+        };
+        let foresight = |agent| constant(agent, Parameter::Foresight);
+        let same = !changed(Parameter::Foresight)
+            && scenario
+                .agents
+                .first()
+                .and_then(foresight)
+                .is_some_and(|first| scenario.agents.iter().all(|agent| foresight(agent) == Some(first)));
         let ahead = (looks(Parameter::Foresight) || looks(Parameter::Headway)).then_some(same);
         let mut repulsion = particles.repulsion.clone();
         repulsion.resize(scenario.agents.len(), f64::NAN);
