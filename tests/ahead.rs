@@ -127,7 +127,9 @@ fn the_line_of_sight_is_looked_at_in_every_step() {
             run.steps(1);
             alone.steps(1);
             let felt = (run.force(0) - alone.force(0)).norm() > 1e-9;
-            assert_eq!(felt, run.at(0).x > 0.0, "{layout:?} {}", run.at(0));
+            // At the end of the wall itself rounding decides.
+            let beyond = run.at(0).x;
+            assert!(beyond.abs() < 1e-6 || felt == (beyond > 0.0), "{layout:?} {}", run.at(0));
         }
     }
 }

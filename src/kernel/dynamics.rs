@@ -316,6 +316,7 @@ impl Mover<'_> {
         state: &State,
         block: usize,
         words: Words<S>,
+        place: (Doubles<S>, Doubles<S>),
         (vx, vy): (Doubles<S>, Doubles<S>),
     ) -> (Doubles<S>, Doubles<S>) {
         let (decay, speed) = (part.load(&state.bodies.decay[block]), part.load(&state.driving.speed[block]));
@@ -330,7 +331,7 @@ impl Mover<'_> {
         // Who moves by themselves (decay 1) has no place to hold.
         let stands = speed.simd_eq(part.c(0.0)) & decay.simd_lt(part.c(1.0));
         if stands.any_true() {
-            let (back_x, back_y) = back(part, state, block, (vx, vy));
+            let (back_x, back_y) = back(part, state, block, place, (vx, vy));
             (wish_x, wish_y) = (stands.select(back_x, wish_x), stands.select(back_y, wish_y));
         }
         let (vx, vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
@@ -357,7 +358,7 @@ impl Mover<'_> {
         let (vx, vy) = kicked(part, state, block);
         let (x0, y0) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
         let (x, y) = (x0 + vx * half, y0 + vy * half);
-        let (vx, vy) = self.driven(part, state, block, part.words(words), (vx, vy));
+        let (vx, vy) = self.driven(part, state, block, part.words(words), (x, y), (vx, vy));
         let (x, y) = (x + vx * half, y + vy * half);
         travel(part, state, block, moving, (x - x0, y - y0));
         part.store_in(here, x, &mut state.motion.x[block]);
@@ -397,7 +398,8 @@ impl Mover<'_> {
     ) {
         self.drift(part, state, block, moving & !moved);
         let v = (part.load(&state.motion.vx[block]), part.load(&state.motion.vy[block]));
-        let (vx, vy) = self.driven(part, state, block, part.words(words), v);
+        let place = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
+        let (vx, vy) = self.driven(part, state, block, part.words(words), place, v);
         part.store_in(part.mask(moving), vx, &mut state.motion.vx[block]);
         part.store_in(part.mask(moving), vy, &mut state.motion.vy[block]);
     }
@@ -424,11 +426,12 @@ fn back<S: Simd>(
     part: Part<S>,
     state: &State,
     block: usize,
+    (x, y): (Doubles<S>, Doubles<S>),
     (vx, vy): (Doubles<S>, Doubles<S>),
 ) -> (Doubles<S>, Doubles<S>) {
     let tau = part.load(&state.bodies[Parameter::Tau][block]);
-    let dx = part.load(&state.driving.rest_x[block]) - (part.load(&state.motion.x[block]) + vx * tau);
-    let dy = part.load(&state.driving.rest_y[block]) - (part.load(&state.motion.y[block]) + vy * tau);
+    let dx = part.load(&state.driving.rest_x[block]) - (x + vx * tau);
+    let dy = part.load(&state.driving.rest_y[block]) - (y + vy * tau);
     let pace = (dx * dx + dy * dy).sqrt() / tau;
     let limit = part.load(&state.bodies[Parameter::Hold][block]);
     let rate = pace.simd_gt(limit).select(limit / pace, part.c(1.0)) / tau;
