@@ -3,7 +3,7 @@
 //! `cargo run --release --example validate` from the root of the repository. Each test is a scenario and a property file in
 //! `validation/`. The first line of the scenario names the source, the first line of the properties the criterion. Two more
 //! comments may follow there: `// Settings: n = 1, 2` asks for several values of a parameter, `// Trials: 600` is the budget
-//! of a query (120 unless given).
+//! of a query (120 unless given). An argument, as in `-- 20`, is the largest budget of all.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints")]
 
@@ -21,6 +21,7 @@ const NAMED: &str = "preset smc1";
 const TRIALS: u64 = 120;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let most = std::env::args().nth(1).map_or(Ok(u64::MAX), |most| most.parse())?;
     let folder = Path::new("validation");
     let names: BTreeSet<String> = fs::read_dir(folder)?
         .filter_map(|entry| {
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let scenario = fs::read_to_string(folder.join(format!("{name}.scn")))?;
         let properties = fs::read_to_string(folder.join(format!("{name}.bltl")))?;
         eprintln!("{name}");
-        page.push_str(&section(name, &scenario, &properties)?);
+        page.push_str(&section((name, &scenario, &properties), most)?);
     }
     page.push_str(&fs::read_to_string(folder.join("missing.md"))?);
     fs::write("docs/validation.md", page)?;
@@ -45,7 +46,10 @@ fn comment<'a>(text: &'a str, word: &str) -> Option<&'a str> {
 }
 
 /// A test: its source, its criterion, and a table of queries by presets.
-fn section(name: &str, scenario: &str, properties: &str) -> Result<String, Box<dyn std::error::Error>> {
+fn section(
+    (name, scenario, properties): (&str, &str, &str),
+    most: u64,
+) -> Result<String, Box<dyn std::error::Error>> {
     let mut out = format!("\n## {name}\n\n");
     writeln!(out, "{} {}\n", comment(scenario, "").unwrap_or(""), comment(properties, "").unwrap_or(""))?;
     let presets: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
@@ -56,7 +60,7 @@ fn section(name: &str, scenario: &str, properties: &str) -> Result<String, Box<d
         None => vec![None],
     };
     let trials = comment(properties, "Trials: ").map_or(Ok(TRIALS), str::parse)?;
-    let options = Options::default().max_trials(trials);
+    let options = Options::default().max_trials(trials.min(most));
     for setting in settings {
         let of = |preset: &&str| {
             let text = scenario.replace(NAMED, &format!("preset {preset}"));
