@@ -20,6 +20,7 @@ mod files;
 mod filter;
 mod findings;
 mod imports;
+mod intention;
 mod interned;
 mod kinds;
 mod laws;

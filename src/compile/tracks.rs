@@ -5,6 +5,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::{Files, missing};
+use super::intention::{beside, places};
 use super::laws::value_span;
 use super::sighting::Tracks;
 use super::symbols::{Meaning, unknown};
@@ -49,6 +50,15 @@ impl<'a> Elaborator<'a> {
             }
         };
         self.recordings.push(tracks.ok());
+        self.destinations.push(match file {
+            Some((_, path)) => files.get(&beside(&path.value)).and_then(|bytes| {
+                places(
+                    std::str::from_utf8(bytes)
+                        .map_err(|_| "the destinations are not UTF-8 text".to_owned())?,
+                )
+            }),
+            None => Err(format!("`{}` is a stream, which has no destinations", name.name)),
+        });
         self.enter(name, Meaning::Tracks(index));
     }
 

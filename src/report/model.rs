@@ -288,6 +288,7 @@ fn velocity(v: Vec2) -> String {
 pub(super) fn way(scenario: &Scenario, route: &Route) -> String {
     match route {
         Route::Onward => "keeps its initial direction".to_owned(),
+        Route::OneOf { legs, .. } => format!("goes to one of {} destinations", legs.len()),
         Route::Legs { legs, .. } if legs.is_empty() => "stands".to_owned(),
         Route::Legs { legs, then_leave } => {
             let legs: Vec<String> = legs
