@@ -1,7 +1,7 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
-use super::intention::{beside, destinations};
 use super::sighting::{Grouping, Seen};
+use super::wishes::{beside, destinations};
 use crate::data::tracks::Velocity;
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Value};
 use crate::syntax::codes::Code;

@@ -60,6 +60,7 @@ mod tracks;
 mod typed;
 mod ways;
 mod weight;
+mod wishes;
 mod wording;
 mod world;
 mod written;

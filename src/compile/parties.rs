@@ -4,11 +4,11 @@
 use super::behaviour::With;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
-use super::intention::{self, Intended};
 use super::laws::value_span;
 use super::people::People;
 use super::sighting::Sighting;
 use super::symbols::Meaning;
+use super::wishes::{Intended, split};
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
@@ -112,7 +112,7 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<(Common<'a>, Vec<&'a Field>, Start)> {
         let mut kind = self.kind(&decl.kind);
         let (wants, fields) = if decl.recorded.is_some() {
-            intention::split(&decl.body)
+            split(&decl.body)
         } else {
             (Vec::new(), decl.body.iter().collect())
         };

@@ -3,12 +3,12 @@
 use super::behaviour::With;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
-use super::intention::{self, Intended};
 use super::kinds::Kind;
 use super::laws::value_span;
 use super::places::Written;
 use super::sighting::Sighting;
 use super::symbols::{Meaning, unknown};
+use super::wishes::{Intended, split};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
 use crate::model::{Agent, AgentId, Body, Group, Law, Parameter, Route, Source, Start};
@@ -281,7 +281,7 @@ impl<'a> Elaborator<'a> {
     ) {
         let found = self.sighted(recorded, !decl.plural);
         let mut kind = kind;
-        let (wants, fields) = intention::split(&decl.body);
+        let (wants, fields) = split(&decl.body);
         let rest = self.parameters(fields, kind.as_mut().ok(), &Locals::default());
         let intended = self.intended(&wants);
         let has_route = rest.iter().any(|f| f.name.name == "route");

@@ -5,10 +5,10 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::{Files, missing};
-use super::intention::{beside, places};
 use super::laws::value_span;
 use super::sighting::Tracks;
 use super::symbols::{Meaning, unknown};
+use super::wishes::{beside, places};
 use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
 use crate::syntax::ast::{Field, Ident, Text, Value};
 use crate::syntax::codes::Code;

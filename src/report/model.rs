@@ -248,6 +248,9 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     };
     let _ = writeln!(out, "      starts {place}, {}", velocity(agent.start.velocity));
     let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+    if agent.start.turn != Law::Constant(0.0) {
+        let _ = writeln!(out, "      turned from the recorded heading by {}", law(&agent.start.turn, "rad"));
+    }
 }
 
 /// How wide the body of a group is, of persons whose radius is at most `drawn`.
