@@ -72,11 +72,24 @@ fn plain(scene: &Crowd, i: usize) -> Sum {
     sum
 }
 
+/// Whether an obstacle crosses the line between two people.
+fn hides(obstacle: &Obstacle, one: Vec2, other: Vec2) -> bool {
+    let line = Segment::new(one, other);
+    match obstacle {
+        Obstacle::Wall(pieces) => pieces.iter().any(|piece| piece.meets(&line)),
+        Obstacle::Solid(Shape::Circle { centre, radius }) => line.distance(*centre) < *radius,
+        Obstacle::Solid(Shape::Polygon(polygon)) => polygon.segments().any(|edge| edge.meets(&line)),
+    }
+}
+
 /// Equation (3), up to a reach.
 fn of_others(scene: &Crowd, i: usize, reach: f64, sum: &mut Sum) {
     let one = &scene.people[i];
     for (j, other) in scene.people.iter().enumerate() {
-        if j == i || !other.present {
+        if j == i
+            || !other.present
+            || scene.obstacles.iter().any(|obstacle| hides(obstacle, one.at, other.at))
+        {
             continue;
         }
         let d = one.at - other.at;

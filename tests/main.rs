@@ -6,6 +6,7 @@
 )]
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a test says what was poor or skipped")]
 
+mod ahead;
 mod chance;
 mod circles;
 mod claims;
@@ -52,6 +53,7 @@ mod runs;
 mod seen;
 mod semantics;
 mod shapes;
+mod shards;
 mod signal_semantics;
 mod splitting;
 mod start;

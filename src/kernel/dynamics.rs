@@ -19,6 +19,12 @@
 //! One evaluation of the slow force and one draw of noise a step, second order in dt. Where a lane has no
 //! body near another, 1 to 4 run in one pass; where it has, in several with the same operations, so the
 //! path taken changes no bit. Slots that are absent or in a lane without a trial keep their bytes.
+//!
+//! In 3 v0 is at most what the headway to those ahead allows (`force::ahead`), as it was at the beginning of the step. An
+//! agent that stands, and so has no v0, is driven back to where it came to rest: there it would come by itself at the
+//! moment when v0 ends, so that whoever stops undisturbed stops as before. With `x + v tau` for where it would come to rest
+//! now, its driving velocity is `(rest - x - v tau)/tau`, at most `hold`: a displacement fades out with the relaxation time
+//! and without a swing.
 
 use super::behaviour;
 use super::cells::Cells;
@@ -38,7 +44,7 @@ use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::model::TOP_SPEED;
+use crate::model::{Parameter, TOP_SPEED};
 
 /// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
 /// one after `refresh` changes no bit.
@@ -201,6 +207,7 @@ fn keep_forces<S: Simd>(simd: S, state: &mut State, scratch: &Scratch, lanes: Ma
             let here = part.mask(state.present[block] & lanes);
             part.store_in(here, part.load(&sum.x), &mut state.motion.fx[block]);
             part.store_in(here, part.load(&sum.y), &mut state.motion.fy[block]);
+            part.store_in(here, part.load(&sum.slowness), &mut state.driving.slowness[block]);
         }
     }
 }
@@ -220,6 +227,11 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
     let occupied = state.layout.slots_of(state.occupied);
     scratch.moving.clear();
     scratch.moving.extend(state.present.iter().map(|&here| here & occupied));
+    for (block, &moving) in scratch.moving.iter().enumerate() {
+        for part in parts(simd) {
+            rest(part, state, block, moving);
+        }
+    }
     let mover = Mover { program, draws: Draws::at(state), half: 0.5 * program.dt };
     if scratch.contacts.is_empty() {
         for (block, &moving) in scratch.moving.iter().enumerate() {
@@ -304,11 +316,24 @@ impl Mover<'_> {
         state: &State,
         block: usize,
         words: Words<S>,
+        place: (Doubles<S>, Doubles<S>),
         (vx, vy): (Doubles<S>, Doubles<S>),
     ) -> (Doubles<S>, Doubles<S>) {
-        let (decay, drive) = (part.load(&state.bodies.decay[block]), part.load(&state.driving.speed[block]));
-        let (wish_x, wish_y) =
+        let (decay, speed) = (part.load(&state.bodies.decay[block]), part.load(&state.driving.speed[block]));
+        let drive = if self.program.forces.ahead.is_some() {
+            let slowness = part.load(&state.driving.slowness[block]);
+            (slowness * speed).simd_gt(part.c(1.0)).select(part.c(1.0) / slowness, speed)
+        } else {
+            speed
+        };
+        let (mut wish_x, mut wish_y) =
             (drive * part.load(&state.driving.ex[block]), drive * part.load(&state.driving.ey[block]));
+        // Who moves by themselves (decay 1) has no place to hold.
+        let stands = speed.simd_eq(part.c(0.0)) & decay.simd_lt(part.c(1.0));
+        if stands.any_true() {
+            let (back_x, back_y) = back(part, state, block, place, (vx, vy));
+            (wish_x, wish_y) = (stands.select(back_x, wish_x), stands.select(back_y, wish_y));
+        }
         let (vx, vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
         if !self.program.noise.present {
             return (vx, vy);
@@ -333,7 +358,7 @@ impl Mover<'_> {
         let (vx, vy) = kicked(part, state, block);
         let (x0, y0) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
         let (x, y) = (x0 + vx * half, y0 + vy * half);
-        let (vx, vy) = self.driven(part, state, block, part.words(words), (vx, vy));
+        let (vx, vy) = self.driven(part, state, block, part.words(words), (x, y), (vx, vy));
         let (x, y) = (x + vx * half, y + vy * half);
         travel(part, state, block, moving, (x - x0, y - y0));
         part.store_in(here, x, &mut state.motion.x[block]);
@@ -373,7 +398,8 @@ impl Mover<'_> {
     ) {
         self.drift(part, state, block, moving & !moved);
         let v = (part.load(&state.motion.vx[block]), part.load(&state.motion.vy[block]));
-        let (vx, vy) = self.driven(part, state, block, part.words(words), v);
+        let place = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
+        let (vx, vy) = self.driven(part, state, block, part.words(words), place, v);
         part.store_in(part.mask(moving), vx, &mut state.motion.vx[block]);
         part.store_in(part.mask(moving), vy, &mut state.motion.vy[block]);
     }
@@ -391,6 +417,41 @@ impl Mover<'_> {
         let dx = part.load(&state.motion.x[block]) - part.load(x0);
         let dy = part.load(&state.motion.y[block]) - part.load(y0);
         travel(part, state, block, moving, (dx, dy));
+    }
+}
+
+/// The driving velocity with which those who stand return to where they came to rest.
+#[inline(always)]
+fn back<S: Simd>(
+    part: Part<S>,
+    state: &State,
+    block: usize,
+    (x, y): (Doubles<S>, Doubles<S>),
+    (vx, vy): (Doubles<S>, Doubles<S>),
+) -> (Doubles<S>, Doubles<S>) {
+    let tau = part.load(&state.bodies[Parameter::Tau][block]);
+    let dx = part.load(&state.driving.rest_x[block]) - (x + vx * tau);
+    let dy = part.load(&state.driving.rest_y[block]) - (y + vy * tau);
+    let pace = (dx * dx + dy * dy).sqrt() / tau;
+    let limit = part.load(&state.bodies[Parameter::Hold][block]);
+    let rate = pace.simd_gt(limit).select(limit / pace, part.c(1.0)) / tau;
+    (dx * rate, dy * rate)
+}
+
+/// Notes where those came or come to rest who began to stand with the last state, and forgets it of those who do not stand.
+#[inline(always)]
+fn rest<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
+    let none = part.c(f64::INFINITY);
+    let stands = part.load(&state.driving.speed[block]).simd_eq(part.c(0.0));
+    let old = part.load(&state.driving.rest_x[block]);
+    let rests = old.simd_lt(none);
+    let (here, changed) = (part.mask(moving), stands ^ rests);
+    if (here & changed).any_true() {
+        let tau = part.load(&state.bodies[Parameter::Tau][block]);
+        let x = part.load(&state.motion.x[block]) + part.load(&state.motion.vx[block]) * tau;
+        let y = part.load(&state.motion.y[block]) + part.load(&state.motion.vy[block]) * tau;
+        part.store_in(here & changed, stands.select(x, none), &mut state.driving.rest_x[block]);
+        part.store_in(here & changed, stands.select(y, none), &mut state.driving.rest_y[block]);
     }
 }
 

@@ -32,6 +32,14 @@ struct Agent {
     r: Lanes,
 }
 
+impl Agent {
+    /// Where it is in the lanes in which it is present.
+    fn places(&self) -> impl Iterator<Item = Vec2> + '_ {
+        let present = (0..LANES).filter(|&lane| self.r.0[lane] > f64::NEG_INFINITY);
+        present.map(|lane| Vec2::new(self.x.0[lane], self.y.0[lane]))
+    }
+}
+
 /// Who can reach whom, at the positions where it was made.
 #[derive(Clone, Debug, Default)]
 struct Neighbours {
@@ -40,10 +48,23 @@ struct Neighbours {
     others: Vec<u32>,
     first_surface: Vec<u32>,
     surfaces: Vec<u32>,
+    /// Which faces may come between the two of each pair, in the order of `others`: where their list starts, and one more at
+    /// the end. Empty where no face comes between anybody.
+    first_screen: Vec<u32>,
+    screens: Vec<u32>,
     x: Vec<Lanes>,
     y: Vec<Lanes>,
     present: Vec<Mask>,
     keys: [TrialKey; LANES],
+}
+
+impl Neighbours {
+    /// Which faces may come between the two of a pair.
+    #[inline(always)]
+    fn screens_of(&self, at: usize) -> Option<&[u32]> {
+        let first = self.first_screen.get(at..at + 2)?;
+        (first[0] < first[1]).then(|| &self.screens[first[0] as usize..first[1] as usize])
+    }
 }
 
 /// Room for the forces of a batch of trials.
@@ -57,6 +78,9 @@ pub(super) struct Lanewise {
     reaches: Vec<Lanes>,
     room: Vec<u32>,
     faces: walls::Room,
+    /// Faces that can stand between any two, and those of them that are near one agent.
+    dividing: Vec<u32>,
+    dividing_near: Vec<u32>,
     stale: bool,
 }
 
@@ -92,7 +116,7 @@ impl Lanewise {
             term,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, term, forces.margin, sums, contacts),
+                || self.pairs(simd, term, forces, sums, contacts),
             )
         );
         simd.vectorize(
@@ -170,9 +194,36 @@ impl Lanewise {
         list.others.clear();
         list.first_surface.clear();
         list.surfaces.clear();
+        list.first_screen.clear();
+        list.screens.clear();
         let reaches = &self.reaches;
+        // How far from its centre somebody feels others, at most.
+        let mut farthest = Lanes::ZERO;
+        self.dividing.clear();
+        if !forces.surfaces.is_empty() {
+            let all = self.agents.iter().flat_map(Agent::places);
+            if let Some(Bounds { low, high }) = Bounds::around(all) {
+                let slack = Vec2::repeat(SLACK);
+                let all = Bounds { low: low - slack, high: high + slack };
+                forces.surfaces.list_screens(&all, &mut self.dividing);
+            }
+            for part in parts(simd) {
+                let mut far = part.c(0.0);
+                for (reach, one) in reaches.iter().zip(&self.agents) {
+                    far = larger::<S>(part.load(reach) + part.load(&one.r), far);
+                }
+                part.store(far, &mut farthest);
+            }
+        }
         for (i, one) in self.agents.iter().enumerate() {
             list.first.push(list.others.len() as u32);
+            let near_one = &mut self.dividing_near;
+            near_one.clear();
+            if !self.dividing.is_empty() {
+                let near = forces.surfaces.nearby.find(&around(one, &farthest), &mut self.room);
+                near_one
+                    .extend(near.iter().copied().filter(|face| self.dividing.binary_search(face).is_ok()));
+            }
             for (j, other) in self.agents.iter().enumerate().skip(i + 1) {
                 let mut near = false;
                 for part in parts(simd) {
@@ -185,6 +236,16 @@ impl Lanewise {
                 }
                 if near {
                     list.others.push(j as u32);
+                    if !self.dividing.is_empty() {
+                        list.first_screen.push(list.screens.len() as u32);
+                        list.screens.extend(near_one.iter().copied().filter(|&face| {
+                            parts(simd).any(|part| {
+                                let place = (part.load(&one.x), part.load(&one.y));
+                                let there = (part.load(&other.x), part.load(&other.y));
+                                forces.surfaces.may_hide(face, part, place, there, SLACK).any_true()
+                            })
+                        }));
+                    }
                 }
             }
             list.first_surface.push(list.surfaces.len() as u32);
@@ -204,6 +265,11 @@ impl Lanewise {
         }
         list.first.push(list.others.len() as u32);
         list.first_surface.push(list.surfaces.len() as u32);
+        if list.screens.is_empty() {
+            list.first_screen.clear();
+        } else {
+            list.first_screen.push(list.screens.len() as u32);
+        }
     }
 
     /// Forces between agents.
@@ -212,7 +278,7 @@ impl Lanewise {
         &self,
         simd: S,
         term: T,
-        margin: f64,
+        forces: &Forces,
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
@@ -221,30 +287,46 @@ impl Lanewise {
         let kept = &self.kept[..n * T::COUNT];
         let sums = &mut sums[..n];
         let first = &self.neighbours.first[..=n];
+        let others = &self.neighbours.others;
         for part in parts(simd) {
-            let minus_margin = part.c(-margin);
+            let minus_margin = part.c(-forces.margin);
             for i in 0..n {
                 let agent = &agents[i];
                 let (x, y, r) = (part.load(&agent.x), part.load(&agent.y), part.load(&agent.r));
                 let own = load::<S, T>(part, kept, i);
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
-                for &j in &self.neighbours.others[first[i] as usize..first[i + 1] as usize] {
+                let mut slowness = part.load(&sums[i].slowness);
+                for at in first[i] as usize..first[i + 1] as usize {
+                    let j = others[at];
                     let other = &agents[j as usize];
                     let way = (x - part.load(&other.x), y - part.load(&other.y));
-                    let pair = Pair::new(part, way, r + part.load(&other.r));
+                    let mut pair = Pair::new(part, way, r + part.load(&other.r));
                     let touching = pair.gap.simd_gt(minus_margin);
                     if touching.any_true() {
                         contacts.push_pair(i as u32, j, part.bits(touching));
                     }
-                    let (on_i, on_j) = term.force(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
-                    fx += on_i * pair.dx;
-                    fy += on_i * pair.dy;
+                    if let Some(screens) = self.neighbours.screens_of(at) {
+                        let there = (part.load(&other.x), part.load(&other.y));
+                        let hidden = forces.surfaces.hide(screens, part, (x, y), there);
+                        pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
+                    }
+                    let push = term.push(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
+                    fx += push.one.0;
+                    fy += push.one.1;
                     let sum = &mut sums[j as usize];
-                    part.store(part.load(&sum.x) - on_j * pair.dx, &mut sum.x);
-                    part.store(part.load(&sum.y) - on_j * pair.dy, &mut sum.y);
+                    part.store(part.load(&sum.x) - push.other.0, &mut sum.x);
+                    part.store(part.load(&sum.y) - push.other.1, &mut sum.y);
+                    if T::KEEPS_HEADWAY {
+                        slowness = larger::<S>(push.slowness_of_one, slowness);
+                        let most = larger::<S>(push.slowness_of_other, part.load(&sum.slowness));
+                        part.store(most, &mut sum.slowness);
+                    }
                 }
                 part.store(fx, &mut sums[i].x);
                 part.store(fy, &mut sums[i].y);
+                if T::KEEPS_HEADWAY {
+                    part.store(slowness, &mut sums[i].slowness);
+                }
             }
         }
     }

@@ -159,6 +159,12 @@ parameters! {
     }
     Lambda2 "lambda2" "second social term: weight of agents behind" =
         FORCE { range: Range::Share, default: Some(1.0), shown: Shown::With(Parameter::A2) }
+    Foresight "foresight" "how far ahead the social force of others is felt where they will be nearest; at most" =
+        FORCE { dimension: Dimension::TIME, default: Some(0.0), shown: Shown::UnlessDefault }
+    Headway "headway" "time that separates an agent at its driving speed from the one ahead who walks the same way" =
+        FORCE { dimension: Dimension::TIME, default: Some(0.0), shown: Shown::UnlessDefault }
+    Hold "hold" "largest speed at which an agent that stands returns to its place" =
+        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, default: Some(0.3), shown: Shown::UnlessDefault }
     K1 "k1" "body compression, in contact only" = FIXED { dimension: Dimension::STIFFNESS }
     K2 "k2" "sliding friction, in contact only" = FIXED { dimension: Dimension::FRICTION }
     Noise "noise" "standard deviation that each velocity component reaches in equilibrium, whatever the step" =

@@ -308,15 +308,14 @@ fn a_step_that_is_too_long_for_the_forces_is_warned_of_once() {
         )
     };
     let preset = |name: &str| format!("kind adult: sfm preset {name}");
-    let (helbing, vissim) = (preset("helbing2000"), preset("vissim2008"));
+    let helbing = preset("helbing2000");
     let heavy = "kind adult: sfm preset helbing2000 { mass = uniform(50 kg, 90 kg)  A = 4000 N }";
-    let cases: [(&str, &str, &[&str]); 9] = [
+    let cases: [(&str, &str, &[&str]); 8] = [
         ("0.1 s", &helbing, &["`adult` (at most 0.0461 s)", "`step = 0.025 s`", "n = 6"]),
         ("1 s / 10", &helbing, &["`step = 0.025 s`"]),
         ("1 s / 20", &helbing, &["`step = 0.025 s`"]),
         ("1 s / 15", &helbing, &["`step = 1 s / 30`"]),
-        ("0.1 s", &preset("johansson2007"), &["(at most 0.05 s)", "`step = 0.05 s`", "tenth of `tau`"]),
-        ("0.05 s", &vissim, &["(at most 0.04 s)", "`step = 0.025 s`", "tenth of `tau`"]),
+        ("0.1 s", &preset("smc1"), &["(at most 0.025 s)", "`step = 0.025 s`", "tenth of `tau`"]),
         ("0.05 s", heavy, &["(at most 0.0258 s)", "`step = 0.025 s`"]),
         ("0.025 s", heavy, &[]),
         ("0.04 s", &helbing, &[]),

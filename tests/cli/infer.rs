@@ -57,7 +57,7 @@ fn the_social_force_takes_a_kind_and_a_scene() {
     let (square, force) = (["infer", "models/square.csv"], ["--motion", "social-force"]);
     for (words, kind, scene) in [
         (&[] as &[&str], "helbing2000", Value::Null),
-        (&["--kind", "vissim2008"], "vissim2008", Value::Null),
+        (&["--kind", "smc1"], "smc1", Value::Null),
         (&["--scene", "models/square.scn"], "helbing2000", "models/square.scn".into()),
         (&["--scene", "models/square.scn", "--kind", "adult"], "adult", "models/square.scn".into()),
         (&["--scene", "models/square.scn", "--data", "models"], "helbing2000", "models/square.scn".into()),
@@ -143,7 +143,7 @@ fn bad_options_of_motion_are_refused() {
         ),
         (
             &["--scene", "scene.scn", "--kind", "stepper"],
-            &["no force moves agents of the kind `stepper`", "slim, helbing2000, johansson2007, vissim2008"],
+            &["no force moves agents of the kind `stepper`", "slim, helbing2000, smc1"],
         ),
         (&["--scene", "broken.scn"], &["error[E0303]", "broken.scn:3:15"]),
         (&["--scene", "missing.scn"], &["error[E0701]", "does not exist"]),

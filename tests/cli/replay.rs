@@ -32,7 +32,7 @@ fn a_monitor_has_the_same_bytes_with_any_number_of_threads() {
 
 #[test]
 fn an_evaluation_has_the_same_bytes_with_any_number_of_threads() {
-    let asked = ["--kinds", "adult,vissim,constant", "--trials", "10", "--speed", "0.2"];
+    let asked = ["--kinds", "adult,smc1,constant", "--trials", "10", "--speed", "0.2"];
     let said = square("evaluate", &[&asked[..], &["-j", "1"]].concat());
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     for threads in ["2", "8"] {

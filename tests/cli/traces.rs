@@ -322,7 +322,7 @@ estimate P(late) by fixed(trials = 12)
 #[test]
 fn who_has_nowhere_to_go_feels_the_same_all_around() {
     let scenario = "horizon = 2 s\nstep = 0.01 s\n\
-kind p: sfm preset johansson2007 { noise = 0 m/s  radius = 0.25 m }\n\
+kind p: sfm preset helbing2000 { A = 33.6 N  B = 1.65 m  lambda = 0.12  noise = 0 m/s  radius = 0.25 m  hold = 0 m/s }\n\
 agent west: p { at = (0, 0) }\nagent east: p { at = (1, 0) }\n\
 agent south: p { at = (99, 0) }\nagent north: p { at = (99, 1) }\n";
     let place = Place::new(&[("a.scn", scenario)]);

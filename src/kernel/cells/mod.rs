@@ -19,6 +19,7 @@ use super::force::{Forces, walls as faces, with_pair_terms};
 use super::near::{Close, Grid, Index};
 use super::state::State;
 use super::vector::parts;
+use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::LANES;
 use fearless_simd::Simd;
 use pairs::{Task, Touch};
@@ -34,6 +35,8 @@ pub(super) struct Cells {
     /// The forces.
     fx: Vec<f64>,
     fy: Vec<f64>,
+    /// The slowness that those ahead impose; empty where nobody keeps a headway.
+    slowness: Vec<f64>,
     /// Of one strip: the vectors of neighbours, and the sums of its agents over eight lanes.
     tasks: Vec<Task>,
     touches: Vec<Touch>,
@@ -41,6 +44,11 @@ pub(super) struct Cells {
     room: Vec<u32>,
     near: Vec<u32>,
     faces: faces::Room,
+    /// Faces that can stand between any two; of each eight agents of a strip those that are near: where their list starts, and
+    /// one more at the end.
+    dividing: Vec<u32>,
+    first_screen: Vec<u32>,
+    screens: Vec<u32>,
     /// As in `Close`.
     edge: f64,
 }
@@ -83,13 +91,14 @@ impl Cells {
                 || self.keep(simd, term, state),
             )
         );
+        self.list_dividing(forces);
         // A function for each combination of terms, as in `lanewise`.
         with_pair_terms!(
             forces,
             term,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, term, forces.margin, contacts),
+                || self.pairs(simd, &reach, term, forces, contacts),
             )
         );
         simd.vectorize(
@@ -101,6 +110,18 @@ impl Cells {
         forces.add_cohesion(state, sums);
     }
 
+    /// Lists the faces that can stand between any two agents.
+    fn list_dividing(&mut self, forces: &Forces) {
+        self.dividing.clear();
+        if !forces.surfaces.is_empty() {
+            let strips = (0..self.index.grid.strips).flat_map(|strip| self.index.strip(strip));
+            let all = Bounds::around(strips.map(|at| Vec2::new(self.index.x[at], self.index.y[at])));
+            if let Some(all) = all {
+                forces.surfaces.list_screens(&all, &mut self.dividing);
+            }
+        }
+    }
+
     /// Hands the forces to the agents.
     fn scatter(&self, sums: &mut [Sum]) {
         for strip in 0..self.index.grid.strips {
@@ -109,6 +130,9 @@ impl Cells {
                 let sum = &mut sums[agent / LANES];
                 sum.x.0[agent % LANES] = self.fx[at];
                 sum.y.0[agent % LANES] = self.fy[at];
+                if let Some(slowness) = self.slowness.get(at) {
+                    sum.slowness.0[agent % LANES] = *slowness;
+                }
             }
         }
     }
@@ -121,6 +145,8 @@ impl Cells {
             field.clear();
             field.resize(total, 0.0);
         }
+        self.slowness.clear();
+        self.slowness.resize(if T::KEEPS_HEADWAY { total } else { 0 }, 0.0);
         self.columns.resize_with(T::COUNT, Vec::new);
         for column in &mut self.columns {
             column.resize(total, 0.0);

@@ -8,9 +8,10 @@ use super::Cells;
 use super::reach::Reach;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
+use crate::kernel::force::Forces;
 use crate::kernel::force::pair::{Pair, PairTerm, Sum};
 use crate::kernel::near::low_bits;
-use crate::kernel::vector::{first_part, parts, width};
+use crate::kernel::vector::{first_part, larger, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -41,13 +42,14 @@ impl Cells {
         simd: S,
         reach: &Reach,
         term: T,
-        margin: f64,
+        forces: &Forces,
         contacts: &mut Contacts,
     ) {
         for strip in 0..self.index.grid.strips {
             self.list(simd, reach, strip);
             let from = self.index.strip(strip).start;
-            let found = self.work_off(simd, term, margin, from);
+            self.list_screens(reach, forces, strip);
+            let found = self.work_off(simd, term, (forces, reach.most), from);
             let agent = &self.index.agent;
             for touch in &self.touches[..found] {
                 for lane in touch.lanes.iter() {
@@ -58,6 +60,10 @@ impl Cells {
             for (k, sum) in self.own.iter().enumerate() {
                 self.fx[from + k] += total(&sum.x);
                 self.fy[from + k] += total(&sum.y);
+                if T::KEEPS_HEADWAY {
+                    let slowness = &mut self.slowness[from + k];
+                    *slowness = sum.slowness.0.iter().fold(*slowness, |a, &b| if b > a { b } else { a });
+                }
             }
         }
     }
@@ -112,28 +118,68 @@ impl Cells {
         }
     }
 
+    /// Lists which faces may hide others from each eight agents of a strip.
+    fn list_screens(&mut self, reach: &Reach, forces: &Forces, strip: usize) {
+        self.first_screen.clear();
+        self.screens.clear();
+        if self.dividing.is_empty() {
+            return;
+        }
+        let here = self.index.strip(strip);
+        for k in here.clone().step_by(LANES) {
+            let group = k..here.end.min(k + LANES);
+            let around = reach.around(&self.index.x[group.clone()], &self.index.y[group]);
+            let near = forces.surfaces.nearby.find(&around, &mut self.room);
+            self.first_screen.push(self.screens.len() as u32);
+            self.screens.extend(near.iter().filter(|face| self.dividing.binary_search(face).is_ok()));
+        }
+        self.first_screen.push(self.screens.len() as u32);
+    }
+
     /// Works the list off. Gives how many touches were found.
     #[inline(always)]
-    fn work_off<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, margin: f64, from: usize) -> usize {
+    fn work_off<S: Simd, T: PairTerm>(
+        &mut self,
+        simd: S,
+        term: T,
+        (forces, reach): (&Forces, f64),
+        from: usize,
+    ) -> usize {
         let part = first_part(simd);
         let length = self.index.agent.len();
         // Of one length, so that one comparison shows that all are long enough.
         let (xs, ys, rs) = (&self.index.x[..length], &self.index.y[..length], &self.index.r[..length]);
         let (fx, fy) = (&mut self.fx[..length], &mut self.fy[..length]);
+        let slownesses = self.slowness.as_mut_slice();
         let columns = T::load(
             #[inline(always)]
             |k| &self.columns[k][..length],
         );
-        let minus_margin = part.c(-margin);
+        let (minus_margin, reach) = (part.c(-forces.margin), part.c(reach));
+        let has_screens = !self.screens.is_empty();
         let mut found = 0;
         for task in &self.tasks {
             let (i, j) = (from + task.one as usize, task.others as usize);
             let dx = part.c(xs[i]) - part.slice(&xs[j..j + LANES]);
             let dy = part.c(ys[i]) - part.slice(&ys[j..j + LANES]);
-            let pair = Pair::new(part, (dx, dy), part.c(rs[i]) + part.slice(&rs[j..j + LANES]));
+            let mut pair = Pair::new(part, (dx, dy), part.c(rs[i]) + part.slice(&rs[j..j + LANES]));
             let lanes = part.bits(pair.gap.simd_gt(minus_margin));
             self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
             found += usize::from(!lanes.is_empty());
+            if has_screens && pair.distance.simd_lt(reach).any_true() {
+                let group = task.one as usize / LANES;
+                let screens = self.first_screen[group] as usize..self.first_screen[group + 1] as usize;
+                let (place, there) = (
+                    (part.c(xs[i]), part.c(ys[i])),
+                    (part.slice(&xs[j..j + LANES]), part.slice(&ys[j..j + LANES])),
+                );
+                for &face in &self.screens[screens] {
+                    if forces.surfaces.may_hide(face, part, place, there, 0.0).any_true() {
+                        let hidden = forces.surfaces.hides(face, part, place, there);
+                        pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
+                    }
+                }
+            }
             let one = T::map(
                 &columns,
                 #[inline(always)]
@@ -144,13 +190,19 @@ impl Cells {
                 #[inline(always)]
                 |column| part.slice(&column[j..j + LANES]),
             );
-            let (on_i, on_j) = term.force(part, &pair, &one, &others);
-            part.take(on_j * dx, &mut fx[j..j + LANES]);
-            part.take(on_j * dy, &mut fy[j..j + LANES]);
+            let push = term.push(part, &pair, &one, &others);
+            part.take(push.other.0, &mut fx[j..j + LANES]);
+            part.take(push.other.1, &mut fy[j..j + LANES]);
             let (sum, lane) = (&mut self.own[task.one as usize], task.lane as usize);
             let (sum_x, sum_y) = (&mut sum.x.0[lane..], &mut sum.y.0[lane..]);
-            part.put(part.slice(sum_x) + on_i * dx, sum_x);
-            part.put(part.slice(sum_y) + on_i * dy, sum_y);
+            part.put(part.slice(sum_x) + push.one.0, sum_x);
+            part.put(part.slice(sum_y) + push.one.1, sum_y);
+            if T::KEEPS_HEADWAY {
+                let most = &mut slownesses[j..j + LANES];
+                part.put(larger::<S>(push.slowness_of_other, part.slice(most)), most);
+                let most = &mut sum.slowness.0[lane..];
+                part.put(larger::<S>(push.slowness_of_one, part.slice(most)), most);
+            }
         }
         found
     }

@@ -6,6 +6,7 @@
 //!
 //! A new term between two bodies is a file here and a line in `with_pair_terms`.
 
+mod ahead;
 mod cohesion;
 pub(super) mod contact;
 pub(super) mod pair;
@@ -15,7 +16,8 @@ pub(super) mod walls;
 use super::pace::fastest;
 use super::state::State;
 use crate::base::math::at_least;
-use crate::model::{Body, Law, Parameter, Scenario};
+use crate::model::{Agent, Body, Law, Parameter, Scenario};
+pub(super) use ahead::Ahead;
 use cohesion::Cohesion;
 pub(super) use pair::Both;
 use pair::Sum;
@@ -38,15 +40,35 @@ pub struct Forces {
     pub(super) shared: Option<(f64, f64)>,
     /// Whether any body has the second term.
     pub(super) second: bool,
+    /// Whether any body looks ahead, and whether all have the same foresight.
+    pub(super) ahead: Option<SameForesight>,
+    /// `particles.repulsion`, or as long a list of NaN.
+    pub(super) repulsion: Vec<f64>,
     /// Bodies (and walls) nearer than this to touching may touch within a step, m.
     pub(super) margin: f64,
 }
+
+/// Whether the foresight of all bodies is the same constant.
+type SameForesight = bool;
 
 /// Runs a block with the terms between two bodies that a scenario has, as `$term`. It is compiled once for each combination
 /// of them, so that a term that a scenario lacks costs nothing.
 macro_rules! with_pair_terms {
     ($forces:ident, $term:ident, $body:expr) => {
-        if let Some((b, b2)) = $forces.shared {
+        if let (Some(true), Some((b, _)), false) = ($forces.ahead, $forces.shared, $forces.second) {
+            let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
+            let $term = $crate::kernel::force::Ahead::<_, true>($term);
+            $body
+        } else if $forces.ahead.is_some() {
+            // One term for all other scenes in which somebody looks ahead.
+            let first = $crate::kernel::force::Social::<false, false>::with_own_ranges();
+            let second = $crate::kernel::force::Social::<true, false>::with_own_ranges();
+            let term = $crate::kernel::force::Both(first, second);
+            let repulsion = $forces.repulsion.as_slice();
+            let term = $crate::kernel::force::Bounded { term, repulsion };
+            let $term = $crate::kernel::force::Ahead::<_, false>(term);
+            $body
+        } else if let Some((b, b2)) = $forces.shared {
             let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
             let second = $crate::kernel::force::Social::<true, true>::with_range(b2);
             with_pair_terms!(@if $forces.second, $term = $crate::kernel::force::Both($term, second), $body)
@@ -91,6 +113,23 @@ impl Forces {
         let first_range = shared_constant(scenario, |body| &body[Parameter::B]).filter(|_| same);
         let second_range =
             if second { shared_constant(scenario, |body| &body[Parameter::B2]) } else { Some(1.0) };
+        let constant = |agent: &Agent, parameter: Parameter| {
+            let has = parameter.description().kinds.contains(&agent.body.kind);
+            if has { agent.body[parameter].constant() } else { Some(0.0) }
+        };
+        let looks = |parameter| {
+            changed(parameter) || scenario.agents.iter().any(|agent| constant(agent, parameter) != Some(0.0))
+        };
+        let foresight = |agent| constant(agent, Parameter::Foresight);
+        let same = !changed(Parameter::Foresight)
+            && scenario
+                .agents
+                .first()
+                .and_then(foresight)
+                .is_some_and(|first| scenario.agents.iter().all(|agent| foresight(agent) == Some(first)));
+        let ahead = (looks(Parameter::Foresight) || looks(Parameter::Headway)).then_some(same);
+        let mut repulsion = particles.repulsion.clone();
+        repulsion.resize(scenario.agents.len(), f64::NAN);
         let shared = first_range.zip(second_range).filter(|_| particles.repulsion.is_empty());
         Self {
             surfaces: Surfaces::new(&scenario.scene.barriers),
@@ -98,6 +137,8 @@ impl Forces {
             particles,
             shared,
             second,
+            ahead,
+            repulsion,
             margin: at_least(APPROACH, 2.0 * fastest(scenario)) * dt,
         }
     }

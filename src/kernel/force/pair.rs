@@ -11,11 +11,22 @@ use crate::kernel::vector::{Doubles, Part, larger};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-/// A force, N.
+/// A force, N, and the largest slowness that those ahead impose, s/m: 0 where nobody keeps a headway.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::kernel) struct Sum {
     pub(in crate::kernel) x: Lanes,
     pub(in crate::kernel) y: Lanes,
+    pub(in crate::kernel) slowness: Lanes,
+}
+
+/// What two bodies do to each other: the force that pushes the first away and minus the force on the second, N, and the
+/// slowness, one over the driving speed that it has at most, that each imposes on the other, s/m.
+#[derive(Clone, Copy)]
+pub(in crate::kernel) struct Push<S: Simd> {
+    pub(in crate::kernel) one: (Doubles<S>, Doubles<S>),
+    pub(in crate::kernel) other: (Doubles<S>, Doubles<S>),
+    pub(in crate::kernel) slowness_of_one: Doubles<S>,
+    pub(in crate::kernel) slowness_of_other: Doubles<S>,
 }
 
 /// The agents of the lanes.
@@ -52,7 +63,7 @@ pub(in crate::kernel) struct Pair<S: Simd> {
     pub(in crate::kernel) dx: Doubles<S>,
     pub(in crate::kernel) dy: Doubles<S>,
     /// Its length, and one over that.
-    pub(super) distance: Doubles<S>,
+    pub(in crate::kernel) distance: Doubles<S>,
     pub(super) inverse: Doubles<S>,
     /// How deep they overlap, m; minus infinity where one is absent.
     pub(in crate::kernel) gap: Doubles<S>,
@@ -75,6 +86,8 @@ impl<S: Simd> Pair<S> {
 pub(in crate::kernel) trait PairTerm: Copy {
     /// How many numbers it keeps of a body.
     const COUNT: usize;
+    /// Whether bodies keep a headway.
+    const KEEPS_HEADWAY: bool = false;
     /// These numbers, each as a `T`: a vector, or a column of all bodies.
     type Of<T: Copy>: Copy;
 
@@ -105,6 +118,24 @@ pub(in crate::kernel) trait PairTerm: Copy {
         one: &Self::Of<Doubles<S>>,
         other: &Self::Of<Doubles<S>>,
     ) -> (Doubles<S>, Doubles<S>);
+
+    /// All that the two do to each other.
+    #[inline(always)]
+    fn push<S: Simd>(
+        self,
+        part: Part<S>,
+        pair: &Pair<S>,
+        one: &Self::Of<Doubles<S>>,
+        other: &Self::Of<Doubles<S>>,
+    ) -> Push<S> {
+        let (on_one, on_other) = self.force(part, pair, one, other);
+        Push {
+            one: (on_one * pair.dx, on_one * pair.dy),
+            other: (on_other * pair.dx, on_other * pair.dy),
+            slowness_of_one: part.c(0.0),
+            slowness_of_other: part.c(0.0),
+        }
+    }
 }
 
 /// Two terms.

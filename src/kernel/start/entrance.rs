@@ -11,7 +11,7 @@ use crate::kernel::parameters::Values;
 use crate::kernel::plan::Occasion;
 use crate::kernel::process::delay::after;
 use crate::kernel::program::Program;
-use crate::kernel::state::{Layout, State};
+use crate::kernel::state::{Layout, Motion, State};
 use crate::model::{AgentId, Move, Parameter, Position};
 
 /// Puts an agent into the scene, at the beginning of its way.
@@ -31,9 +31,11 @@ pub(super) fn enter(
     put(&mut state.motion.y, at.y);
     put(&mut state.motion.vx, velocity.x);
     put(&mut state.motion.vy, velocity.y);
-    for field in [&mut state.motion.travelled, &mut state.motion.fx, &mut state.motion.fy] {
+    let Motion { travelled, fx, fy, .. } = &mut state.motion;
+    for field in [travelled, fx, fy, &mut state.driving.slowness] {
         put(field, 0.0);
     }
+    state.driving.move_on(slot);
     state.present[slot.block] |= Mask::lane(slot.lane);
     state.passages.begin(slot);
     driver::begin(&program.drive, state, (agent, lane), occasion, advice);

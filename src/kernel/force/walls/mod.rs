@@ -21,6 +21,7 @@
 
 mod face;
 mod joints;
+mod screen;
 mod sharing;
 #[cfg(test)]
 mod tests;

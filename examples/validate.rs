@@ -1,0 +1,97 @@
+//! Runs the validation suite for every preset and writes `docs/validation.md`.
+//!
+//! `cargo run --release --example validate` from the root of the repository. Each test is a scenario and a property file in
+//! `validation/`. The first line of the scenario names the source, the first line of the properties the criterion. Two more
+//! comments may follow there: `// Settings: n = 1, 2` asks for several values of a parameter, `// Trials: 600` is the budget
+//! of a query (120 unless given).
+
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints")]
+
+use smc::compile::presets::PRESETS;
+
+use smc::{Draft, Options, Report};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// The preset that the scenarios name.
+const NAMED: &str = "preset smc1";
+
+const TRIALS: u64 = 120;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = Path::new("validation");
+    let names: BTreeSet<String> = fs::read_dir(folder)?
+        .filter_map(|entry| {
+            Some(entry.ok()?.file_name().into_string().ok()?.strip_suffix(".bltl")?.to_string())
+        })
+        .collect();
+    let mut page = fs::read_to_string(folder.join("head.md"))?;
+    for name in &names {
+        let scenario = fs::read_to_string(folder.join(format!("{name}.scn")))?;
+        let properties = fs::read_to_string(folder.join(format!("{name}.bltl")))?;
+        eprintln!("{name}");
+        page.push_str(&section(name, &scenario, &properties)?);
+    }
+    page.push_str(&fs::read_to_string(folder.join("missing.md"))?);
+    fs::write("docs/validation.md", page)?;
+    Ok(())
+}
+
+/// What a comment of a text says after a word.
+fn comment<'a>(text: &'a str, word: &str) -> Option<&'a str> {
+    text.lines().find_map(|line| line.strip_prefix("// ")?.strip_prefix(word))
+}
+
+/// A test: its source, its criterion, and a table of queries by presets.
+fn section(name: &str, scenario: &str, properties: &str) -> Result<String, Box<dyn std::error::Error>> {
+    let mut out = format!("\n## {name}\n\n");
+    writeln!(out, "{} {}\n", comment(scenario, "").unwrap_or(""), comment(properties, "").unwrap_or(""))?;
+    let presets: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    writeln!(out, "| query | {} |", presets.join(" | "))?;
+    writeln!(out, "| --- {}|", "| --- ".repeat(presets.len()))?;
+    let settings = match comment(properties, "Settings: ").and_then(|all| all.split_once(" = ")) {
+        Some((parameter, values)) => values.split(", ").map(|value| Some((parameter, value))).collect(),
+        None => vec![None],
+    };
+    let trials = comment(properties, "Trials: ").map_or(Ok(TRIALS), str::parse)?;
+    let options = Options::default().max_trials(trials);
+    for setting in settings {
+        let of = |preset: &&str| {
+            let text = scenario.replace(NAMED, &format!("preset {preset}"));
+            let source = Draft::new(name, text);
+            let source = setting.map_or(source.clone(), |(parameter, value)| source.set(parameter, value));
+            source.parse()?.check(properties, &options)
+        };
+        let reports: Vec<_> = presets.iter().map(of).collect();
+        let queries =
+            properties.lines().filter(|line| line.starts_with("check ") || line.starts_with("estimate "));
+        for (k, query) in queries.enumerate() {
+            let given =
+                setting.map_or(String::new(), |(parameter, value)| format!("{parameter} = {value}: "));
+            write!(out, "| {given}`{query}` |")?;
+            for report in &reports {
+                let cell = report.as_ref().map_or_else(
+                    |refused| {
+                        let code = refused.iter().next().map(|first| first.code.name());
+                        format!("cannot begin ({})", code.unwrap_or(""))
+                    },
+                    |report| cell(report, k),
+                );
+                write!(out, " {cell} |")?;
+            }
+            out.push('\n');
+        }
+    }
+    Ok(out)
+}
+
+/// Verdict, estimate and interval of a query.
+fn cell(report: &Report, query: usize) -> String {
+    let Some(result) = report.results().get(query) else { return "-".into() };
+    let verdict = result.verdict.map_or(String::new(), |verdict| format!("**{}** ", verdict.name()));
+    let estimate = result.estimate.map_or("-".into(), |value| format!("{value:.2}"));
+    let trials = result.consumed.counts.trials;
+    format!("{verdict}{estimate} [{:.2}, {:.2}], {trials} trials", result.low, result.high)
+}
