@@ -5,8 +5,8 @@ use crate::base::decimal::Decimal;
 use crate::base::geometry::Vec2;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{
-    Agent, AgentId, Attached, BehaviourId, Behaviours, Bool, Family, Kind, Leg, Mode, Particle, Position,
-    Processes, Scene, Start, Variable,
+    Agent, AgentId, Attached, BehaviourId, Behaviours, Bool, Family, Kind, Leg, Mode, Particle, Processes,
+    Scene, Start, Variable,
 };
 use proptest::prelude::*;
 
