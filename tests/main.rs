@@ -25,6 +25,7 @@ mod floors;
 mod forces;
 mod formatter;
 mod gait_measured;
+mod intention;
 mod jumps;
 mod lanes;
 mod language;
