@@ -135,7 +135,7 @@ proptest! {
         let _ = (read_eth_biwi(&text), read_groups(&text), read_geojson(&text), read_wkt(&text));
         let _ = (read_dxf(&text, None, &mut |_, _| true), read_batch(&text));
         for format in Format::all() {
-            let _ = format.read_batches(&text, &Reading::default(), Velocity::Seen);
+            let _ = format.read_batches(text.as_bytes(), &Reading::default(), Velocity::Seen);
         }
     }
 
@@ -173,7 +173,7 @@ proptest! {
         for text in [parts.concat(), format!("time,id,x,y\n{}", table.replace(' ', ",")), format!("# framerate: 2\n{table}")] {
             let lines = text.lines().count();
             for format in Format::all() {
-                if let Err(errors) = format.read(&text, &Reading { frames_per_second: rate }) {
+                if let Err(errors) = format.read(&text, &Reading { frames_per_second: rate, ..Reading::default() }) {
                     prop_assert!(!errors.is_empty());
                     prop_assert!(errors.iter().all(|e| e.line <= lines));
                 }

@@ -9,6 +9,7 @@ use super::laws::value_span;
 use super::sighting::Tracks;
 use super::symbols::{Meaning, unknown};
 use super::wishes::{beside, places};
+use crate::base::random::MOST_TRIALS;
 use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
 use crate::syntax::ast::{Field, Ident, Text, Value};
 use crate::syntax::codes::Code;
@@ -19,7 +20,17 @@ use std::collections::BTreeSet;
 /// How many bad lines of a file are shown.
 pub(super) const SHOWN_LINES: usize = 10;
 /// The fields of tracks.
-const FIELDS: [&str; 2] = ["velocity", "memory"];
+const FIELDS: [&str; 3] = ["velocity", "memory", "trial"];
+
+/// What the fields say.
+#[derive(Clone, Copy, Debug, Default)]
+struct TrackFields {
+    velocity: Option<Velocity>,
+    /// Seconds.
+    memory: f64,
+    /// The trial of a table with several.
+    trial: Option<u64>,
+}
 
 impl<'a> Elaborator<'a> {
     /// `tracks hotel = eth_biwi "seq_hotel/obsmat.txt" { velocity = seen }`, `tracks here = stream`
@@ -33,9 +44,9 @@ impl<'a> Elaborator<'a> {
         let index = self.recordings.len();
         let fields = self.track_fields(body);
         let tracks = match (files.seen(&name.name), file) {
-            (Some(seen), _) => fields.map(|(_, memory)| Tracks::Live { seen: seen.clone(), memory }),
-            (None, Some((format, path))) => self.recording(format, path, files).and_then(|recording| {
-                let (velocity, memory) = fields?;
+            (Some(seen), _) => fields.map(|TrackFields { memory, .. }| Tracks::Live { seen: seen.clone(), memory }),
+            (None, Some((format, path))) => fields.and_then(|TrackFields { velocity, memory, trial }| {
+                let recording = self.recording(format, path, trial, files)?;
                 let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);
                 let recording = recording.with(velocity);
                 self.velocities.push((name.name.clone(), recording.velocity().name()));
@@ -62,9 +73,9 @@ impl<'a> Elaborator<'a> {
         self.enter(name, Meaning::Tracks(index));
     }
 
-    /// `velocity` and `memory`, s.
-    fn track_fields(&mut self, body: &'a [Field]) -> Lowered<(Option<Velocity>, f64)> {
-        let (mut velocity, mut memory, mut failed) = (None, 0.0, false);
+    /// `velocity`, `memory` and `trial`.
+    fn track_fields(&mut self, body: &'a [Field]) -> Lowered<TrackFields> {
+        let (mut read, mut failed) = (TrackFields::default(), false);
         for (k, field) in body.iter().enumerate() {
             let (name, at) = (field.name.name.as_str(), value_span(&field.value));
             if body[..k].iter().any(|before| before.name.name == name) {
@@ -75,8 +86,8 @@ impl<'a> Elaborator<'a> {
             }
             match name {
                 "velocity" => {
-                    velocity = super::call_arguments::word(&field.value).and_then(Velocity::from_name);
-                    if velocity.is_none() {
+                    read.velocity = super::call_arguments::word(&field.value).and_then(Velocity::from_name);
+                    if read.velocity.is_none() {
                         let error =
                             Diagnostic::error(Code::E0305, at, "`velocity` must be `seen` or `recorded`");
                         self.note(error);
@@ -84,7 +95,11 @@ impl<'a> Elaborator<'a> {
                     }
                 }
                 "memory" => match self.memory(&field.value, at) {
-                    Ok(seconds) => memory = seconds,
+                    Ok(seconds) => read.memory = seconds,
+                    Err(Reported) => failed = true,
+                },
+                "trial" => match self.trial(&field.value, at) {
+                    Ok(number) => read.trial = Some(number),
                     Err(Reported) => failed = true,
                 },
                 _ => {
@@ -93,7 +108,7 @@ impl<'a> Elaborator<'a> {
                 }
             }
         }
-        if failed { Err(Reported) } else { Ok((velocity, memory)) }
+        if failed { Err(Reported) } else { Ok(read) }
     }
 
     fn memory(&mut self, value: &'a Value, at: Span) -> Lowered<f64> {
@@ -107,7 +122,24 @@ impl<'a> Elaborator<'a> {
         Ok(number.value)
     }
 
-    fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
+    fn trial(&mut self, value: &'a Value, at: Span) -> Lowered<u64> {
+        let number = match value {
+            Value::Plain(expr) => self.number_of(expr, Dimension::NONE, &Locals::default())?.value,
+            _ => f64::NAN,
+        };
+        if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 {
+            return Ok(number as u64);
+        }
+        self.report(Diagnostic::error(Code::E0305, at, "`trial` must be a whole number from 0"))
+    }
+
+    fn recording(
+        &mut self,
+        format: &Ident,
+        path: &Text,
+        trial: Option<u64>,
+        files: &Files,
+    ) -> Lowered<Recording> {
         let Some(reader) = Format::from_name(&format.name) else {
             let names: Vec<&str> = Format::all().iter().map(|format| format.name).collect();
             let hint = format!("the formats are {}", names.join(", "));
@@ -118,10 +150,8 @@ impl<'a> Elaborator<'a> {
             Ok(bytes) => bytes,
             Err(reason) => return self.report(missing(path.span, &reason)),
         };
-        let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error(Code::E0702, path.span, "the file is not UTF-8 text"));
-        };
-        reader.read(text, &Reading::default()).or_else(|errors| self.report(unreadable(path.span, &errors)))
+        let reading = Reading { trial, ..Reading::default() };
+        reader.read(bytes, &reading).or_else(|errors| self.report(unreadable(path.span, &errors)))
     }
 }
 

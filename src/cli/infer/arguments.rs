@@ -16,6 +16,9 @@ pub(in crate::cli) struct InferCommand {
     /// Frames per second of a table with frames.
     #[arg(long, value_name = "RATE")]
     pub(super) fps: Option<f64>,
+    /// The trial of a table with several.
+    #[arg(long, value_name = "N")]
+    pub(super) trial: Option<u64>,
     /// First time.
     #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
     pub(super) from: Option<f64>,

@@ -53,14 +53,14 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<(), Vec<Diagnostic
     let ChosenMotion { mut motion, kind, paths } = motion::chosen(arguments, colors)?;
     let files: Vec<PathBuf> = named.into_iter().flatten().map(PathBuf::from).chain(paths).collect();
     output::guard(arguments.output.as_deref(), &files).map_err(one)?;
-    let text = text_of(&arguments.tracks)?;
-    let Some(format) = arguments.input.or_else(|| Format::of(&text)) else {
+    let bytes = inputs::read(&arguments.tracks).map_err(|reason| one(complaint::input(reason)))?;
+    let Some(format) = arguments.input.or_else(|| Format::of(&bytes)) else {
         let said = format!("`{}` is in no known format", inputs::shown(&arguments.tracks));
         return Err(one(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`")));
     };
-    let reading = Reading { frames_per_second: arguments.fps };
+    let reading = Reading { frames_per_second: arguments.fps, trial: arguments.trial };
     let mut batches = format
-        .read_batches(&text, &reading, arguments.velocity)
+        .read_batches(&bytes, &reading, arguments.velocity)
         .map_err(|errors| bad_lines(&arguments.tracks, &errors))?;
     if batches.is_empty() {
         let said = format!("`{}` contains no observation", inputs::shown(&arguments.tracks));

@@ -109,7 +109,7 @@ fn simulate(
     let advice = arguments.advice.as_deref().map(|name| option(&scenario, name)).transpose()?;
     placeable(world).map_err(|fault| library::refusal(&fault))?;
     let last = last(&scenario, arguments.until)?;
-    let drivers = |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
     let all = arguments.trial..arguments.trial + arguments.trials;
     let chosen = match (&arguments.keep, target) {
         (Some(keep), Some(target)) => {

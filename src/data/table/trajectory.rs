@@ -57,6 +57,7 @@ impl Trajectory {
     }
 
     /// The trial of the first row.
+    #[cfg(feature = "sqlite")]
     pub(super) fn trial(&self) -> Option<i64> {
         self.known
     }

@@ -8,7 +8,7 @@ use super::cells::{cells, records};
 use super::line::{LineError, number, quoted, whole_fault};
 use super::recording::{Clock, Recording};
 use super::rows::{Row, people, usual_stride};
-use super::timed::{self, TimedRow};
+use super::timed::TimedRow;
 use super::traces::Traces;
 use crate::base::geometry::{Vec2, coordinate_fault};
 use std::borrow::Cow;
