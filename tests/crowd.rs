@@ -124,8 +124,7 @@ impl Crowd {
             start: Start {
                 position: Position::Point(person.at),
                 velocity: person.velocity,
-                driving: None,
-                seen: Vec::new(),
+                ..Start::at_rest(Vec2::zeros())
             },
             route: Route::Onward,
             group: None,

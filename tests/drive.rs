@@ -40,7 +40,7 @@ fn agent(at: Vec2, velocity: Vec2, route: Route) -> Agent {
         name: "walker".into(),
         entity: 77,
         body: Arc::new(body),
-        start: Start { position: Position::Point(at), velocity, driving: None, seen: Vec::new() },
+        start: Start { position: Position::Point(at), velocity, ..Start::at_rest(Vec2::zeros()) },
         route,
         group: None,
         particle: None,

@@ -44,8 +44,7 @@ fn agent(k: u32, at: Vec2, noise: f64) -> Agent {
         start: Start {
             position: Position::Point(at),
             velocity: p(0.0, 0.0),
-            driving: None,
-            seen: Vec::new(),
+            ..Start::at_rest(Vec2::zeros())
         },
         route: Route::Legs {
             legs: vec![Leg::To(Goal::Point(p(6.0, 0.0))), Leg::To(Goal::Region(RegionId(0)))],

@@ -49,7 +49,7 @@ fn agent(entity: u32, position: Position) -> Agent {
         name: format!("a{entity}"),
         entity,
         body: Arc::new(body()),
-        start: Start { position, velocity: p(0.0, 0.0), driving: None, seen: Vec::new() },
+        start: Start { position, velocity: p(0.0, 0.0), ..Start::at_rest(Vec2::zeros()) },
         route: Route::Legs { legs: vec![Leg::To(Goal::Region(RegionId(0)))], then_leave: false },
         group: None,
         particle: None,

@@ -1,9 +1,8 @@
 //! Floor 0: what every other floor may use and what knows nothing of people, languages or statistics.
 //!
 //! Geometry of the plane, mathematics with the same bits on every machine, counter-based random
-//! streams, exact decimals, ticks of the clock and lane vectors; numbers as bytes and back.
+//! streams, exact decimals, ticks of the clock and lane vectors.
 
-pub mod bytes;
 pub mod decimal;
 pub mod dimension;
 pub mod elliptic;

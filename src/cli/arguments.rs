@@ -46,6 +46,10 @@ pub(super) enum ColorChoice {
 pub(super) enum Command {
     /// Answer the queries of property files about a scenario: decide, estimate, compare, rank.
     Check(Box<Check>),
+    /// Run a shard of a plan, on any machine, and write its part.
+    Shard(Box<ShardCommand>),
+    /// Answer the queries from the parts of shards in a folder, DIR; the plan of what is lacking is written there.
+    Merge(Box<Merge>),
     /// Run trials of a scenario and write their traces.
     Simulate(Box<Simulate>),
     /// Write the paths and speed profiles of walkers that plan.
@@ -85,9 +89,9 @@ pub(super) enum Command {
     },
 }
 
-/// `smc check`
+/// What is asked, and how it is reported.
 #[derive(Args, Debug)]
-pub(super) struct Check {
+pub(super) struct Questions {
     /// The model.
     #[command(flatten)]
     pub(super) model: Model,
@@ -104,19 +108,12 @@ pub(super) struct Check {
     /// Number of threads; all cores by default. Never changes a result.
     #[arg(short = 'j', long)]
     pub(super) threads: Option<usize>,
-    /// Number of additional processes that run the trials and share the threads. Never changes a result.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
-    pub(super) ranks: Option<u16>,
     /// Largest number of trials of a query (of a ranking: of an option); one million by default.
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) max_trials: Option<u64>,
     /// Largest number of trials of a ranking, over all its options.
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) total_trials: Option<u64>,
-    /// Time limit of the whole call, such as `50ms`, `2s`, `5min`; none by default. The search for witnesses may
-    /// exceed it by 25 %, at least 20 ms and at most a second.
-    #[arg(long, value_parser = parse_duration)]
-    pub(super) timeout: Option<std::time::Duration>,
     /// Format of the results on standard output: `text` (unless set), `brief`, `json`, `csv`, `junit` or `github`. With a file,
     /// as in `--format csv=results.csv`, they are also written there. May be given several times.
     #[arg(long, value_name = "FORMAT[=FILE]")]
@@ -131,12 +128,72 @@ pub(super) struct Check {
     /// list has its own number). May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(super) only: Vec<String>,
-    /// Only forecast the number of trials and the time of each query; runs the first few trials.
-    #[arg(long, conflicts_with_all = ["timeout", "report"])]
-    pub(super) forecast: bool,
+    /// Largest number of shards of a round; with `--launch local` the number of threads by default, else 100.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) shards: Option<u32>,
     /// Show no progress and no forecast on standard error.
     #[arg(short, long)]
     pub(super) quiet: bool,
+}
+
+/// `smc check`
+#[derive(Args, Debug)]
+pub(super) struct Check {
+    /// What is asked.
+    #[command(flatten)]
+    pub(super) questions: Questions,
+    /// Time limit of the whole call, such as `50ms`, `2s`, `5min`; none by default. The search for witnesses may
+    /// exceed it by 25 %, at least 20 ms and at most a second.
+    #[arg(long, value_parser = parse_duration)]
+    pub(super) timeout: Option<std::time::Duration>,
+    /// Only forecast the number of trials and the time of each query; runs the first few trials.
+    #[arg(long, conflicts_with_all = ["timeout", "report", "launch"])]
+    pub(super) forecast: bool,
+    /// Run the trials in shards: `local` (processes), `hq` (`HyperQueue`), `slurm`, `k8s` (prints a job for Kubernetes), or a
+    /// command in which `{shard}`, `{count}`, `{last}`, `{plan}` and `{parts}` are replaced. Never changes a result.
+    #[arg(long, value_name = "ENGINE|COMMAND")]
+    pub(super) launch: Option<String>,
+    /// Folder of the parts that shards write; it is kept, so that a call can go on where another one ended.
+    #[arg(long, value_name = "DIR", requires = "launch")]
+    pub(super) parts: Option<PathBuf>,
+}
+
+/// `smc merge`
+#[derive(Args, Debug)]
+#[command(override_usage = "smc merge [OPTIONS] <SCENARIO> <PROPERTIES>... <DIR>")]
+pub(super) struct Merge {
+    /// What is asked; the last property file is the folder.
+    #[command(flatten)]
+    pub(super) questions: Questions,
+    /// Taken from the end of the property files.
+    #[arg(skip)]
+    pub(super) folder: PathBuf,
+}
+
+/// `smc shard`
+#[derive(Args, Debug)]
+pub(super) struct ShardCommand {
+    /// The model.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Property files (`.bltl`).
+    #[arg(required = true)]
+    pub(super) properties: Vec<String>,
+    /// Which velocities recorded people have, as in `smc check`.
+    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
+    pub(super) velocity: Option<Velocity>,
+    /// The plan of the round.
+    #[arg(long, value_name = "PLAN.json")]
+    pub(super) round: PathBuf,
+    /// Number of the shard, from 0.
+    #[arg(long, value_name = "I")]
+    pub(super) index: usize,
+    /// Folder of the parts.
+    #[arg(short, long, value_name = "DIR")]
+    pub(super) output: PathBuf,
+    /// Number of threads; one by default, because queues count cores.
+    #[arg(short = 'j', long, default_value_t = 1)]
+    pub(super) threads: usize,
 }
 
 /// `smc simulate`

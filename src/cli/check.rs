@@ -1,22 +1,21 @@
 //! `smc check`: decide, estimate, compare, rank.
 
-use super::arguments::Check;
+use super::arguments::{Check, Questions};
 use super::deadline::{Deadline, Ended, Phase};
-use super::file_cache::{FileCache, pack};
+use super::launch::Launcher;
+use super::merge::Rounds;
 use super::outputs::Outputs;
+use super::parts::PartsFolder;
 use super::progress::Progress;
-use super::ranks::ProcessPool;
 use super::terminal::{Colors, print, say};
-use super::{complaint, inputs, output, page, ranks};
+use super::{complaint, inputs, output, page};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
-use crate::compile::Study;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{CallResult, Failure, Finding};
+use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{
-    Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
-};
+use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, Threads, forecast, run as run_study};
 use crate::gait;
 use crate::library;
 use crate::model::Scenario;
@@ -26,17 +25,26 @@ use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
+use std::path::Path;
 use std::sync::Arc;
 
+/// Where outcomes come from: trials that are run or launched, or the parts in a folder.
+pub(super) enum Way<'a> {
+    Check(&'a Check),
+    Merge(&'a Path),
+}
+
 /// Runs the command.
-pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
-    let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
+pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit {
+    let (timeout, is_forecast, launch) = match way {
+        Way::Check(check) => (check.timeout, check.forecast, check.launch.as_deref()),
+        Way::Merge(_) => (None, false, None),
+    };
+    let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), timeout);
     budget.max_total = arguments.total_trials;
     let budget = Arc::new(budget);
     let deadline = Deadline::watch(&budget, ender(arguments, colors));
-    let cache = if arguments.ranks.is_some() { FileCache::Kept(Vec::new()) } else { FileCache::Files };
-    let inputs::Loaded { mut inputs, paths, cache } =
-        inputs::load_from(cache, &arguments.model, &arguments.properties);
+    let inputs::Loaded { mut inputs, paths } = inputs::load(&arguments.model, &arguments.properties);
     if inputs.study.is_none() {
         deadline.enter(Phase::Printing);
     }
@@ -62,6 +70,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         Ok(only) => only,
         Err(error) => return reporter.refuse(error),
     };
+    let origin = Origin::of(study, arguments.seed);
     let ways = Ways::default();
     let doubts = library::survey(study, &only, arguments.seed, &ways);
     if library::is_refused(&doubts) {
@@ -81,63 +90,76 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         ));
     }
     let threads = arguments.threads.unwrap_or_else(cores).min(most);
-    let pool = match pool(arguments, study, &cache, threads, &budget) {
-        Ok(pool) => pool,
-        Err(error) => return reporter.refuse(error),
+    let executor = match Threads::new(Some(threads)) {
+        Ok(executor) => executor,
+        Err(error) => return reporter.fault(&Fault::Threads(error.to_string())),
     };
-    drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
-    let call = Call {
+    let call = || Call {
         seed: arguments.seed,
         branch: 0,
         explains: true,
         line: line(arguments),
-        only,
+        only: only.clone(),
         place: &place,
         drivers: &drivers,
     };
-    if arguments.forecast {
+    if is_forecast {
         deadline.enter(Phase::Sampling);
-        return match forecast(study, &call, pool.executor(), &budget) {
+        return match forecast(study, &call(), &executor, &budget) {
             Ok(total) => reporter.tell(&total),
             Err(fault) => reporter.fault(&fault),
         };
     }
     let progress = Progress::new(arguments.quiet, deadline);
-    match run_study(study, &call, pool.executor(), &budget, &progress) {
-        Ok(mut run) => {
-            // An interruption ends ranks too.
-            if !run.interrupted {
-                run.warnings.extend(pool.warnings());
-            }
-            drop(pool);
+    let result = if let Way::Check(Check { launch: None, .. }) = way {
+        let run = run_study(study, &call(), &executor, &budget, &progress);
+        run.map(Some).map_err(|fault| library::refusals(&fault))
+    } else {
+        let default = if launch == Some("local") { threads } else { 100 };
+        let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
+        let mut rounds = Rounds {
+            study,
+            call: call(),
+            origin,
+            budget: &budget,
+            threads: &executor,
+            shards: arguments.shards.map_or(default, |shards| shards as usize),
+            progress: &progress,
+            warn: &mut warn,
+        };
+        let launcher = launch.map(|engine| Launcher { engine, line: line(arguments), jobs: threads });
+        folder(way).and_then(|mut folder| rounds.run(&mut folder, launcher.as_ref()))
+    };
+    match result {
+        Ok(Some(run)) => {
             let room = report::html::MOST_NUMBERS;
-            let shown = reporter.outputs.page.is_some().then(|| traces(study, &run, &call, &budget, room));
+            let shown = reporter.outputs.page.is_some().then(|| traces(study, &run, &call(), &budget, room));
             reporter.finish(run, shown.unwrap_or_default())
         }
-        Err(fault) => reporter.fault(&fault),
+        Ok(None) => Exit::Success,
+        Err(errors) => reporter.refuse_for(&errors),
     }
 }
 
-/// The executor of the trials of a call.
-fn pool(
-    arguments: &Check,
-    study: &Study,
-    cache: &FileCache,
-    threads: usize,
-    budget: &Budget,
-) -> Result<ProcessPool, Diagnostic> {
-    let own =
-        Threads::new(Some(threads)).map_err(|error| library::refusal(&Fault::Threads(error.to_string())))?;
-    let Some(count) = arguments.ranks.map(usize::from) else { return Ok(ProcessPool::Alone(own)) };
-    let each = (threads / count).max(1);
-    let packed = pack(&arguments.model, &arguments.properties, cache);
-    let (children, lines) = ranks::start(count)
-        .map_err(|reason| complaint::argument(reason, "remove `--ranks`: threads give the same results"))?;
-    let ranks =
-        Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| library::refusal(&fault))?;
-    Ok(ProcessPool::Led { ranks: Box::new(ranks), _children: children })
+/// The folder of the parts of a call.
+fn folder(way: &Way<'_>) -> Result<PartsFolder, Vec<Diagnostic>> {
+    let named = match way {
+        Way::Merge(folder) if !folder.is_dir() => {
+            return Err(vec![complaint::input(format!("the folder `{}` does not exist", folder.display()))]);
+        }
+        Way::Merge(folder) => Some(folder.to_path_buf()),
+        // What is printed for Kubernetes is run later.
+        Way::Check(Check { launch: Some(engine), parts: None, .. }) if engine == "k8s" => {
+            Some("parts".into())
+        }
+        Way::Check(check) => check.parts.clone(),
+    };
+    let is_kept = named.is_some();
+    // Other machines find it where they find the model.
+    let path = named.unwrap_or_else(|| format!(".smc-parts-{}", std::process::id()).into());
+    PartsFolder::new(path, is_kept).map_err(|error| vec![error])
 }
 
 fn cores() -> usize {
@@ -151,7 +173,7 @@ fn most_threads() -> usize {
 
 /// Writes the output of a call in the requested format.
 struct Reporter<'a> {
-    arguments: &'a Check,
+    arguments: &'a Questions,
     colors: Colors,
     deadline: Deadline,
     sources: &'a [Source],
@@ -281,7 +303,7 @@ impl Reporter<'_> {
 }
 
 /// Reports that a call ended before its first trial, on standard error and in formats for machines.
-fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
+fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
     let run = CallResult {
         scenario: arguments.model.scenario.clone(),
         seed: arguments.seed,
@@ -339,7 +361,7 @@ fn for_machines(chosen: Format, run: &CallResult) {
 }
 
 /// The format that a call prints.
-pub(super) fn screen(arguments: &Check) -> Format {
+pub(super) fn screen(arguments: &Questions) -> Format {
     let printed = arguments.format.iter().find(|destination| destination.file.is_none());
     printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format.of())
 }
@@ -351,7 +373,7 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 }
 
 /// The files and settings of the call.
-fn line(arguments: &Check) -> CommandLine {
+fn line(arguments: &Questions) -> CommandLine {
     CommandLine {
         scenario: arguments.model.scenario.clone(),
         properties: arguments.properties.clone(),

@@ -1,6 +1,5 @@
 //! Files of a call: where they are looked for, and their bytes.
 
-use super::file_cache::FileCache;
 use super::values::Model;
 use crate::engine::outcome::{Finding, Spot};
 use crate::library::{Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
@@ -117,7 +116,6 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
 
 /// The files of a call on the disk.
 struct Disk<'m> {
-    cache: FileCache,
     model: &'m Model,
     /// The files that were opened, where they were found.
     paths: Vec<PathBuf>,
@@ -126,17 +124,14 @@ struct Disk<'m> {
 impl Folder for Disk<'_> {
     fn text(&mut self, name: &str) -> Result<Vec<u8>, String> {
         self.paths.push(PathBuf::from(if name == "-" { STDIN } else { name }));
-        self.cache.open(name, || read(name))
+        read(name)
     }
 
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
-        let Self { cache, model, paths } = self;
-        cache.open(path, || {
-            let found = find(path, &model.scenario, &model.data)?;
-            let bytes = read_file(&found).map_err(|error| format!("`{path}` {error}"));
-            paths.push(found);
-            bytes
-        })
+        let found = find(path, &self.model.scenario, &self.model.data)?;
+        let bytes = read_file(&found).map_err(|error| format!("`{path}` {error}"));
+        self.paths.push(found);
+        bytes
     }
 
     fn shown<'n>(&self, name: &'n str) -> &'n str {
@@ -150,13 +145,6 @@ pub(super) struct Loaded {
     pub(super) inputs: Inputs,
     /// The files that were opened, where they were found.
     pub(super) paths: Vec<PathBuf>,
-    /// What was opened, for others who are to compile the same.
-    pub(super) cache: FileCache,
-}
-
-/// Reads, parses and compiles what a call names.
-pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
-    load_from(FileCache::Files, model, properties)
 }
 
 fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
@@ -165,13 +153,13 @@ fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
 
 /// Reads and parses what a call names.
 pub(super) fn parse(model: &Model, properties: &[String]) -> Parsed {
-    let mut disk = Disk { cache: FileCache::Files, model, paths: Vec::new() };
+    let mut disk = Disk { model, paths: Vec::new() };
     read_all(names(model, properties), &mut disk)
 }
 
-/// The same, with files from a cache.
-pub(super) fn load_from(cache: FileCache, model: &Model, properties: &[String]) -> Loaded {
-    let mut disk = Disk { cache, model, paths: Vec::new() };
+/// Reads, parses and compiles what a call names.
+pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
+    let mut disk = Disk { model, paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     let mut inputs = if twice { Inputs::default() } else { compile(names(model, properties), &mut disk) };
     let mut errors = Vec::new();
@@ -188,5 +176,5 @@ pub(super) fn load_from(cache: FileCache, model: &Model, properties: &[String]) 
         inputs.errors += errors.len();
         inputs.diagnostics.extend(errors);
     }
-    Loaded { inputs, paths: disk.paths, cache: disk.cache }
+    Loaded { inputs, paths: disk.paths }
 }

@@ -10,19 +10,21 @@ mod destination;
 mod drift;
 mod end;
 mod explain;
-mod file_cache;
 mod format;
 mod gait;
 mod infer;
 mod inputs;
+mod launch;
 mod manual;
+mod merge;
 mod output;
 mod outputs;
 mod page;
+mod parts;
 mod path;
 mod progress;
-mod ranks;
 mod replay;
+mod shard;
 mod show;
 mod simulate;
 mod terminal;
@@ -33,6 +35,7 @@ use crate::base::visible::visible;
 use crate::engine::outcome::Failure;
 use crate::report::ExitCode as Exit;
 use arguments::{Arguments, Command};
+use check::Way;
 use clap::Parser;
 use destination::Destination;
 use std::borrow::Cow;
@@ -44,9 +47,6 @@ const STACK: usize = 256 << 20;
 
 /// Runs the program.
 pub fn run() -> process::ExitCode {
-    if std::env::args_os().skip(1).eq([ranks::WORD]) {
-        return process::ExitCode::from(rank().code());
-    }
     let mut arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if !error.use_stderr() => {
@@ -59,15 +59,23 @@ pub fn run() -> process::ExitCode {
         }
     };
     match &mut arguments.command {
-        Command::Check(command) => command.model.velocity = command.velocity,
+        Command::Check(command) => command.questions.model.velocity = command.questions.velocity,
+        Command::Merge(command) => {
+            let questions = &mut command.questions;
+            questions.model.velocity = questions.velocity;
+            // Options may stand anywhere, so the folder is whatever comes last.
+            command.folder = questions.properties.pop().unwrap_or_default().into();
+        }
+        Command::Shard(command) => command.model.velocity = command.velocity,
         Command::Simulate(command) => command.model.velocity = command.velocity,
         _ => {}
     }
-    let asked = if let Command::Check(check) = &arguments.command {
-        Some((check::screen(check), check.model.scenario.clone(), check.seed))
-    } else {
-        None
+    let asked = match &arguments.command {
+        Command::Check(check) => Some(&check.questions),
+        Command::Merge(merge) => Some(&merge.questions),
+        _ => None,
     };
+    let asked = asked.map(|asked| (check::screen(asked), asked.model.scenario.clone(), asked.seed));
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(&arguments));
     let exit = match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(exit)) => exit,
@@ -105,7 +113,7 @@ fn misused(error: &clap::Error) {
     let message = message.strip_prefix("error: ").unwrap_or(message);
     let message = &message.split_whitespace().collect::<Vec<_>>().join(" ");
     let format = format_of(&words);
-    if words.iter().any(|word| word == "check")
+    if words.iter().any(|word| word == "check" || word == "merge")
         && let Some(destination) = format.and_then(|text| text.parse::<Destination>().ok())
     {
         check::misused(destination.format.of(), message);
@@ -121,20 +129,12 @@ fn format_of(words: &[String]) -> Option<&str> {
     inline.chain(apart).rfind(|format| !format.contains('='))
 }
 
-/// Runs the program as a rank of another one, which hears of it if that fails.
-fn rank() -> Exit {
-    let worker = std::thread::Builder::new().stack_size(STACK).spawn(ranks::run);
-    match worker.map(std::thread::JoinHandle::join) {
-        Ok(Ok(exit)) => exit,
-        Ok(Err(_)) => Exit::Bug,
-        Err(_) => Exit::Wrong,
-    }
-}
-
 fn dispatch(arguments: &Arguments) -> Exit {
     let colors = Colors::chosen(arguments.color);
     match &arguments.command {
-        Command::Check(command) => check::run(command, colors),
+        Command::Check(command) => check::run(&command.questions, &Way::Check(command), colors),
+        Command::Merge(command) => check::run(&command.questions, &Way::Merge(&command.folder), colors),
+        Command::Shard(command) => shard::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
         Command::Path(command) => path::run(command, colors),
         Command::Advise(command) => advise::run(command, colors),

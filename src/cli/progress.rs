@@ -31,6 +31,18 @@ impl Progress {
     }
 }
 
+impl Progress {
+    /// Shows how far a round of shards is.
+    pub(super) fn shards(&self, message: &str) {
+        let Some(bar) = &self.bar else { return };
+        if bar.is_finished() {
+            bar.reset();
+        }
+        bar.set_message(visible(message).into_owned());
+        bar.tick();
+    }
+}
+
 impl Watch for Progress {
     fn forecast(&self, forecast: &CallForecast) {
         // What is over in a moment needs no forecast.

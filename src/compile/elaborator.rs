@@ -19,7 +19,7 @@ use super::told::Told;
 use super::typed::Typed;
 use super::wording::{Frame, Uses};
 use crate::base::decimal::Decimal;
-use crate::base::geometry::Shape;
+use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::logic::Tree;
 use crate::model::{AgentId, BehaviourId, Bool, Num, Scene};
@@ -97,6 +97,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) expanding: Vec<(ScopeId, String)>,
     /// Recordings read so far.
     pub(super) recordings: Vec<Option<Tracks>>,
+    /// The destinations beside each, m, or why there are none.
+    pub(super) destinations: Vec<Result<Vec<Vec2>, String>>,
     /// Their names, and which velocities they have.
     pub(super) velocities: Vec<(String, &'static str)>,
     /// Finds groups of people who are seen.
@@ -231,6 +233,7 @@ impl<'a> Elaborator<'a> {
             constants: BTreeMap::new(),
             expanding: Vec::new(),
             recordings: Vec::new(),
+            destinations: Vec::new(),
             velocities: Vec::new(),
             grouping: None,
             unseen: Vec::new(),

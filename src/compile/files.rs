@@ -1,8 +1,9 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
 use super::sighting::{Grouping, Seen};
+use super::wishes::{beside, destinations};
 use crate::data::tracks::Velocity;
-use crate::syntax::ast::{Item, ScenarioFile, SceneItem, Value};
+use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -22,8 +23,11 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
     let mut found = Vec::new();
     for item in &file.items {
         match item {
-            Item::Tracks { file: Some((_, path)), .. } => {
+            Item::Tracks { name, file: Some((_, path)), .. } => {
                 found.push(Request { path: path.value.clone(), span: path.span });
+                if asks_for_destinations(file, &name.name) {
+                    found.push(Request { path: beside(&path.value), span: path.span });
+                }
             }
             Item::Scene(items) => {
                 for item in items {
@@ -43,6 +47,17 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
         }
     }
     found
+}
+
+/// Whether somebody goes to the destinations of tracks.
+fn asks_for_destinations(file: &ScenarioFile, tracks: &str) -> bool {
+    file.items.iter().any(|item| {
+        let (Item::Agents(AgentsDecl { body, .. }) | Item::Group(GroupDecl { body, .. })) = item else {
+            return false;
+        };
+        let is_named = |expr: &Expr| matches!(&expr.kind, ExprKind::Name(name) if name == tracks);
+        body.iter().filter_map(destinations).any(|(_, arguments)| arguments.first().is_some_and(is_named))
+    })
 }
 
 /// A file that could not be opened.

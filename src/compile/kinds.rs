@@ -173,7 +173,7 @@ impl Elaborator<'_> {
     /// Takes the parameters among some fields into a kind; returns the other fields.
     pub(super) fn parameters<'f>(
         &mut self,
-        fields: &'f [Field],
+        fields: impl IntoIterator<Item = &'f Field>,
         mut kind: Option<&mut Kind>,
         locals: &Locals,
     ) -> Vec<&'f Field> {

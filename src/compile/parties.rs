@@ -5,9 +5,10 @@ use super::behaviour::With;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::laws::value_span;
-use super::people::{People, moving, start};
+use super::people::People;
 use super::sighting::Sighting;
 use super::symbols::Meaning;
+use super::wishes::{Intended, split};
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
@@ -23,7 +24,7 @@ const PARTICLE_FRICTION: f64 = 40.0;
 const PARTICLE_REPULSION: f64 = 0.5;
 
 /// What members of a group have in common.
-struct Common {
+struct Common<'a> {
     body: Body,
     route: Route,
     attraction: f64,
@@ -31,9 +32,11 @@ struct Common {
     friction: f64,
     /// Whether the group sets the radius, the relaxation time and the speed of its body.
     own: [bool; 3],
+    /// What they want, if they were recorded.
+    intended: Intended<'a>,
 }
 
-impl Common {
+impl Common<'_> {
     /// One body for some persons, who are so far from their middle and have so much room, m.
     fn particle(&self, persons: usize, (spread, room): (f64, f64)) -> Particle {
         let size = (persons as f64).sqrt();
@@ -106,9 +109,15 @@ impl<'a> Elaborator<'a> {
         &mut self,
         decl: &'a GroupDecl,
         people: &mut People,
-    ) -> Lowered<(Common, Vec<&'a Field>, Start)> {
+    ) -> Lowered<(Common<'a>, Vec<&'a Field>, Start)> {
         let mut kind = self.kind(&decl.kind);
-        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        let (wants, fields) = if decl.recorded.is_some() {
+            split(&decl.body)
+        } else {
+            (Vec::new(), decl.body.iter().collect())
+        };
+        let rest = self.parameters(fields, kind.as_mut().ok(), &Locals::default());
+        let intended = self.intended(&wants);
         let start = match &decl.recorded {
             None => self.start(&decl.name, &rest, people, true),
             Some(_) => Ok(Start::at_rest(Vec2::zeros())),
@@ -144,6 +153,7 @@ impl<'a> Elaborator<'a> {
             repulsion: repulsion?,
             friction: friction?,
             own: ["radius", "tau", "speed"].map(given),
+            intended: intended?,
         };
         Ok((common, rest, start?))
     }
@@ -168,7 +178,7 @@ impl<'a> Elaborator<'a> {
         &mut self,
         decl: &'a GroupDecl,
         recorded: &'a Recorded,
-        common: &Common,
+        common: &Common<'_>,
         with: With<'a>,
         people: &mut People,
     ) {
@@ -192,11 +202,14 @@ impl<'a> Elaborator<'a> {
             None => parties.iter().flatten().map(|one| (*one, None)).collect(),
         };
         let is_set = decl.plural || decl.particle.is_none();
-        let each = |k: usize| {
-            let seen: &(Sighting, _) = &bodies[k];
-            (Arc::new(moving(&common.body, &seen.0, common.own[2])), start(&seen.0), common.route.clone())
-        };
-        let Ok(members) = self.people(&decl.name, bodies.len(), is_set, people, each) else {
+        let own_speed = common.own[2] && !common.intended.is_of_speed();
+        let each: Lowered<Vec<_>> = bodies
+            .iter()
+            .map(|(seen, _)| self.walker((&common.body, own_speed), seen, &common.route, &common.intended))
+            .collect();
+        let members =
+            each.and_then(|each| self.people(&decl.name, bodies.len(), is_set, people, |k| each[k].clone()));
+        let Ok(members) = members else {
             self.define_empty(&decl.name, is_set, with);
             return;
         };
@@ -236,7 +249,7 @@ impl People {
 
 /// People who are seen together as one body: at their mean, with their mean velocity, as wide as they stand and barriers
 /// let them.
-fn together(party: &[Sighting], common: &Common, barriers: &[Barrier]) -> (Sighting, Option<Particle>) {
+fn together(party: &[Sighting], common: &Common<'_>, barriers: &[Barrier]) -> (Sighting, Option<Particle>) {
     let count = party.len() as f64;
     let mean = |of: fn(&Sighting) -> Vec2| party.iter().map(of).sum::<Vec2>() / count;
     let position = mean(|one| one.position);

@@ -8,9 +8,10 @@ use super::laws::value_span;
 use super::places::Written;
 use super::sighting::Sighting;
 use super::symbols::{Meaning, unknown};
+use super::wishes::{Intended, split};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
-use crate::model::{Agent, AgentId, Body, Group, Law, Parameter, Position, Route, Source, Start};
+use crate::model::{Agent, AgentId, Body, Group, Law, Parameter, Route, Source, Start};
 use crate::syntax::ast::{AgentsDecl, Expr, Field, Ident};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -195,7 +196,8 @@ impl<'a> Elaborator<'a> {
                 };
                 shared = Some(body.clone());
                 self.agent_names.push(text.clone());
-                self.legs.push(route.goals().count() as u32);
+                let legs = if let Route::OneOf { .. } = route { 1 } else { route.goals().count() };
+                self.legs.push(legs as u32);
                 if matches!(route, Route::Legs { then_leave: true, .. }) {
                     self.may_be_absent(AgentId(self.agent_names.len() as u32 - 1));
                 }
@@ -279,12 +281,14 @@ impl<'a> Elaborator<'a> {
     ) {
         let found = self.sighted(recorded, !decl.plural);
         let mut kind = kind;
-        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        let (wants, fields) = split(&decl.body);
+        let rest = self.parameters(fields, kind.as_mut().ok(), &Locals::default());
+        let intended = self.intended(&wants);
         let has_route = rest.iter().any(|f| f.name.name == "route");
         let route = if has_route { self.route_of(&rest) } else { Ok(Route::Onward) };
         self.only(&rest, &["route"]);
         let base = kind.and_then(|kind| self.body(&kind, &decl.kind));
-        let (Ok(found), Ok(base), Ok(route)) = (found, base, route) else {
+        let (Ok(found), Ok(base), Ok(route), Ok(intended)) = (found, base, route, intended) else {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
@@ -293,10 +297,12 @@ impl<'a> Elaborator<'a> {
             return;
         }
         let found = self.onto_rims(recorded, found.people, &base[Parameter::Radius]);
-        let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
-        let Ok(members) = self.people(&decl.name, found.len(), decl.plural, people, |k| {
-            (Arc::new(moving(&base, &found[k], own_speed)), start(&found[k]), route.clone())
-        }) else {
+        let own_speed = decl.body.iter().any(|f| f.name.name == "speed") && !intended.is_of_speed();
+        let each: Lowered<Vec<_>> =
+            found.iter().map(|seen| self.walker((&base, own_speed), seen, &route, &intended)).collect();
+        let members = each
+            .and_then(|each| self.people(&decl.name, found.len(), decl.plural, people, |k| each[k].clone()));
+        let Ok(members) = members else {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
@@ -307,6 +313,19 @@ impl<'a> Elaborator<'a> {
             _ => Meaning::Agents { members: members.into(), particle: false },
         };
         self.scopes[0].define(&decl.name, meaning);
+    }
+
+    /// Body, start and route of somebody who was seen.
+    pub(super) fn walker(
+        &mut self,
+        (body, own_speed): (&Body, bool),
+        seen: &Sighting,
+        route: &Route,
+        intended: &Intended<'_>,
+    ) -> Lowered<(Arc<Body>, Start, Route)> {
+        let (mut body, mut start, mut route) = (moving(body, seen, own_speed), start(seen), route.clone());
+        self.intend(intended, seen, (&mut body, &mut start, &mut route))?;
+        Ok((Arc::new(body), start, route))
     }
 
     /// Declares somebody who is named and not seen, and so never comes.
@@ -342,7 +361,7 @@ impl<'a> Elaborator<'a> {
 }
 
 /// The body of a kind with the speed of somebody who was seen, unless it has one of its own.
-pub(super) fn moving(body: &Body, seen: &Sighting, own_speed: bool) -> Body {
+fn moving(body: &Body, seen: &Sighting, own_speed: bool) -> Body {
     let mut body = body.clone();
     let speed = seen.driving.norm();
     if speed >= STANDS && !own_speed && body.planner.is_none() {
@@ -352,7 +371,8 @@ pub(super) fn moving(body: &Body, seen: &Sighting, own_speed: bool) -> Body {
 }
 
 /// The start of somebody who was seen.
-pub(super) fn start(seen: &Sighting) -> Start {
+fn start(seen: &Sighting) -> Start {
     let driving = (seen.driving != seen.velocity).then_some(seen.driving);
-    Start { position: Position::Point(seen.position), velocity: seen.velocity, driving, seen: vec![seen.id] }
+    let velocity = seen.velocity;
+    Start { velocity, driving, seen: vec![seen.id], ..Start::at_rest(seen.position) }
 }

@@ -38,7 +38,7 @@ impl Elaborator<'_> {
             }
             None => Ok(Vec2::zeros()),
         };
-        Ok(Start { position: position?, velocity: velocity?, driving: None, seen: Vec::new() })
+        Ok(Start { position: position?, velocity: velocity?, ..Start::at_rest(Vec2::zeros()) })
     }
 
     fn velocity_of(&mut self, expr: &Expr) -> Lowered<Vec2> {

@@ -88,7 +88,7 @@ impl<'a> Elaborator<'a> {
         };
         match self.route(&field.value, &Locals::default())? {
             Route::Legs { legs, .. } => Ok(Route::Legs { legs, then_leave: true }),
-            Route::Onward => Ok(Route::Onward),
+            other => Ok(other),
         }
     }
 

@@ -8,6 +8,7 @@ use super::files::{Files, missing};
 use super::laws::value_span;
 use super::sighting::Tracks;
 use super::symbols::{Meaning, unknown};
+use super::wishes::{beside, places};
 use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
 use crate::syntax::ast::{Field, Ident, Text, Value};
 use crate::syntax::codes::Code;
@@ -49,6 +50,15 @@ impl<'a> Elaborator<'a> {
             }
         };
         self.recordings.push(tracks.ok());
+        self.destinations.push(match file {
+            Some((_, path)) => files.get(&beside(&path.value)).and_then(|bytes| {
+                places(
+                    std::str::from_utf8(bytes)
+                        .map_err(|_| "the destinations are not UTF-8 text".to_owned())?,
+                )
+            }),
+            None => Err(format!("`{}` is a stream, which has no destinations", name.name)),
+        });
         self.enter(name, Meaning::Tracks(index));
     }
 

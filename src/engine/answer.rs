@@ -150,7 +150,7 @@ impl Answers<'_> {
                     result.certificate = Some(between(&result, error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
-                if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
+                if fixed && result.estimate.is_some() && stop.is_early() {
                     result.warnings.push(
                         "the interval is for a number of trials fixed in advance, but sampling ended earlier"
                             .to_owned(),
@@ -216,6 +216,7 @@ impl Answers<'_> {
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
         let calls = (self.call, self.budget);
+        let picks = if self.call.explains { picks } else { &[] };
         witness::find(prepared, column, None, picks, calls, &result.asked.settings, &result.unit)
     }
 

@@ -29,6 +29,8 @@ pub struct Budget {
     pub max_trials: u64,
     /// Most trials of a ranking, over all options: where a deadline found it, a replay finds it again.
     pub max_total: Option<u64>,
+    /// Whether outcomes are not all there.
+    lacks: AtomicBool,
     deadline: Option<Instant>,
     started: Instant,
     interrupted: Arc<AtomicBool>,
@@ -49,6 +51,7 @@ impl Budget {
         Self {
             max_trials,
             max_total: None,
+            lacks: AtomicBool::new(false),
             deadline: timeout.and_then(|t| started.checked_add(t)),
             started,
             interrupted: Arc::default(),
@@ -79,6 +82,7 @@ impl Budget {
         Self {
             max_trials: self.max_trials,
             max_total: self.max_total,
+            lacks: AtomicBool::new(false),
             deadline,
             started: self.started,
             interrupted: self.interrupted.clone(),
@@ -118,14 +122,23 @@ impl Budget {
         self.interrupted.load(Ordering::Relaxed)
     }
 
-    /// Whether no more should be started, for either reason.
+    /// The next outcome is not there: nothing that follows it is read in this part of the budget.
+    pub(super) fn lack(&self) {
+        self.lacks.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether no more should be started, for any of these reasons.
     pub fn must_stop(&self) -> bool {
-        self.is_interrupted() || self.is_over()
+        self.is_interrupted() || self.lacks.load(Ordering::Relaxed) || self.is_over()
     }
 
     /// Why no more is started, once none should be.
-    pub(super) fn stopped_by(&self) -> Stop {
-        if self.is_interrupted() { Stop::Interrupt } else { Stop::Deadline }
+    pub fn stopped_by(&self) -> Stop {
+        match (self.is_interrupted(), self.lacks.load(Ordering::Relaxed)) {
+            (true, _) => Stop::Interrupt,
+            (false, true) => Stop::Missing,
+            (false, false) => Stop::Deadline,
+        }
     }
 
     /// Why no more should be started, if that is so.

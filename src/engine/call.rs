@@ -18,7 +18,7 @@ pub struct Call<'c> {
     pub only: Vec<usize>,
     /// File and line of a span, for reports.
     pub place: &'c (dyn Fn(Span) -> (String, usize) + Sync),
-    /// Makes the drivers of the agents of a world. Trials that ranks run have only those that are built in.
+    /// Makes the drivers of the agents of a world.
     pub drivers: &'c MakeDrivers,
 }
 
@@ -41,6 +41,11 @@ impl CommandLine {
     /// `smc check` with all its settings.
     pub fn check(&self) -> String {
         self.words("check", |_| true)
+    }
+
+    /// `smc shard` with all its settings.
+    pub fn shard(&self) -> String {
+        self.words("shard", |_| true)
     }
 
     /// `smc check` at a point of its sweeps.
@@ -68,7 +73,7 @@ impl CommandLine {
     /// The call up to its other options, as a shell would take it.
     fn words(&self, verb: &str, keep: impl Fn(&str) -> bool) -> String {
         let mut words = vec!["smc".to_owned(), verb.to_owned(), file(&self.scenario)];
-        if verb == "check" {
+        if verb != "simulate" {
             words.extend(self.properties.iter().map(|name| file(name)));
         }
         for set in self.settings.iter().filter(|set| keep(set)) {
@@ -99,7 +104,7 @@ fn file(name: &str) -> String {
 }
 
 /// A word as a shell would take it.
-fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()

@@ -80,6 +80,8 @@ pub(super) struct CompareSampling<'s> {
     tallies: [Tally; 2],
     /// The mean of each side, for expectations.
     means: Vec<Mean>,
+    /// What it has read so far, for forecasts.
+    statistics: PilotStatistics,
     /// Seconds that it has taken so far.
     pub(super) spent: f64,
 }
@@ -119,7 +121,8 @@ impl<'s> CompareSampling<'s> {
         };
         let jobs = [0, 1].map(|side| Job::new(sides.worlds[side], vec![sides.columns[side]], seed));
         let tallies = Default::default();
-        Ok(Self { query, jobs, procedure, range, within, delta, ahead: None, tallies, means, spent: 0.0 })
+        let (statistics, ahead, spent) = Default::default();
+        Ok(Self { query, jobs, procedure, range, within, delta, ahead, tallies, means, statistics, spent })
     }
 
     /// The query.
@@ -156,12 +159,7 @@ impl<'s> CompareSampling<'s> {
         }
         let seconds: f64 =
             (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].prepared.most_steps())).sum();
-        let width = self.range.map_or(1.0, |(low, high)| high - low);
-        let pairs = match self.within {
-            Some(within) => forecast::compare(&statistics, width, within, self.delta),
-            None => Likely::exactly(methods::PLANNED_TRIALS),
-        }
-        .map(|n| n.min(budget.max_trials));
+        let pairs = self.likely(&statistics).map(|n| n.min(budget.max_trials));
         self.ahead = sides.iter().all(Pilot::is_complete).then_some(sides);
         self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
         Ok(Forecast {
@@ -170,6 +168,15 @@ impl<'s> CompareSampling<'s> {
             trials: pairs.map(|n| 2 * n),
             seconds: pairs.likely as f64 * seconds,
         })
+    }
+
+    /// Pairs that it is likely to take; `statistics` is that of their differences.
+    fn likely(&self, statistics: &PilotStatistics) -> Likely {
+        let width = self.range.map_or(1.0, |(low, high)| high - low);
+        match self.within {
+            Some(within) => forecast::compare(statistics, width, within, self.delta),
+            None => Likely::exactly(methods::PLANNED_TRIALS),
+        }
     }
 
     /// What a cell counts for: 0 or 1, or the clipped value.
@@ -218,12 +225,25 @@ impl<'s> CompareSampling<'s> {
                 }
             };
             for (item, pair) in items.iter().zip(first.rows().zip(second.rows())) {
-                let (Some(a), Some(b)) = pair else { continue 'sampling };
+                let (Some(a), Some(b)) = pair else {
+                    if executor.is_stored() {
+                        let likely = self.likely(&self.statistics);
+                        let ahead = forecast::ahead(item.index, Some(likely)).min(most);
+                        for job in &self.jobs {
+                            executor.request(job, None, item.index..ahead);
+                        }
+                        share.lack();
+                    }
+                    continue 'sampling;
+                };
                 let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
                 for (job, cell) in self.jobs.iter().zip([a, b]) {
                     if cell.reading == Reading::Faulty {
                         return Err(super::trial::fault(job.prepared, *item, job.series));
                     }
+                }
+                if let (Some(a), Some(b)) = (self.score(a), self.score(b)) {
+                    self.statistics.add(a - b);
                 }
                 for (side, cell) in [a, b].into_iter().enumerate() {
                     self.tallies[side].add(item.index, cell, self.range);

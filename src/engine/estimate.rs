@@ -297,6 +297,16 @@ impl<'q> EstimateSampling<'q> {
                 return Ok(Advance::Faulty(FaultyTrial { index: item.index, fault }));
             }
             self.next += cells.ready().min(items.len()) as u64;
+            if executor.is_stored()
+                && cells.ready() < items.len()
+                && self.entries.iter().any(EstimateEntry::is_open)
+            {
+                // What nobody reads any more may be what is lacking.
+                self.job.narrow(columns(&self.entries));
+                if executor.request(&self.job, None, self.next..self.foreseen(budget).min(end)) {
+                    share.lack();
+                }
+            }
             let slow = if share.has_deadline() { self.slow(&cells) } else { Vec::new() };
             self.job.reuse(cells);
             if let Some(entry) = self.entries.iter().find(|i| i.is_open()) {
@@ -309,6 +319,16 @@ impl<'q> EstimateSampling<'q> {
             }
         }
         Ok(Advance::Stopped)
+    }
+
+    /// Up to which trial somebody will most likely read.
+    fn foreseen(&self, budget: &Budget) -> u64 {
+        let of = |entry: &EstimateEntry<'_>| {
+            let likely = forecast::entry(&entry.query.ask, &entry.procedure, &entry.statistics);
+            forecast::ahead(self.next, likely).min(entry.procedure.limit().unwrap_or(u64::MAX))
+        };
+        let open = self.entries.iter().filter(|entry| entry.is_open());
+        open.map(of).max().unwrap_or(0).min(budget.max_trials)
     }
 
     /// The columns that hold the others up: in which no trial of a round was decided in its time, or trials take much longer.

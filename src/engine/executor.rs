@@ -8,9 +8,11 @@ use super::cell::{Block, Cell, Item, Series};
 use super::columns::Finished;
 use super::prepared::PreparedWorld;
 use super::runner::Runner;
+use super::splitting::{RunRecord, SplitRun};
 use crate::base::lanes::LANES;
 use crate::logic::Invalid;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
@@ -120,6 +122,22 @@ pub trait Executor: Sync {
 
     /// Calls `work` once on each thread, and returns when all have returned.
     fn everywhere(&self, work: &(dyn Fn() + Sync));
+
+    /// Whether outcomes are stored: trials that are not among them are requested, not run.
+    fn is_stored(&self) -> bool {
+        false
+    }
+
+    /// Requests trials, of an option if one is named, where outcomes are stored; whether the first of them is lacking.
+    fn request(&self, _job: &Job<'_>, _advice: Option<(usize, usize)>, _trials: Range<u64>) -> bool {
+        false
+    }
+
+    /// A run of splitting where these are stored: requested if it is not there, and without a record where it has to be
+    /// made again.
+    fn record(&self, _run: &SplitRun) -> Option<Option<RunRecord>> {
+        None
+    }
 }
 
 /// A prepared world, the columns that are observed, and the workers that are warm.

@@ -57,12 +57,4 @@ pub enum Fault {
     /// No threads can be started.
     #[error("no threads can be started: {0}")]
     Threads(String),
-    /// A rank that does not run what this process runs.
-    #[error("rank {rank} cannot take part: {reason}")]
-    Rank {
-        /// Which, from 1.
-        rank: usize,
-        /// Why.
-        reason: String,
-    },
 }

@@ -138,6 +138,16 @@ pub(super) fn entry(ask: &Ask, procedure: &Procedure, statistics: &PilotStatisti
     Some(Likely { least: whole(fewer * least), likely: whole(likely), most: whole(more * most) })
 }
 
+/// First trials of a query that are requested from elsewhere.
+const FIRST: u64 = 256;
+
+/// Up to which trial outcomes are requested from elsewhere, where so many are read: as many as will surely be needed, or as the
+/// fewest that are likely to be, and at least a fifth more, so that of what comes less than a quarter is in vain.
+pub(super) fn ahead(read: u64, likely: Option<Likely>) -> u64 {
+    let known = likely.filter(|likely| read >= FIRST || likely.least == likely.most);
+    (read + read / 5).max(known.map_or(FIRST, |likely| likely.least))
+}
+
 /// What the truth may be, of a query that is not known yet.
 const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
     Guess { share, mean, variance, theta: f64::NAN, range: 1.0 }

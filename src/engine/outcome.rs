@@ -218,6 +218,8 @@ pub enum Stop {
     Deadline,
     /// Somebody interrupted it.
     Interrupt,
+    /// Outcomes of further trials were not there to be merged.
+    Missing,
 }
 
 impl Stop {
@@ -231,6 +233,12 @@ impl Stop {
             Self::Cap => "cap",
             Self::Deadline => "deadline",
             Self::Interrupt => "interrupt",
+            Self::Missing => "missing",
         }
+    }
+
+    /// Whether how many trials were read is no function of the query.
+    pub const fn is_early(self) -> bool {
+        matches!(self, Self::Deadline | Self::Interrupt | Self::Missing)
     }
 }

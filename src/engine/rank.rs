@@ -13,7 +13,7 @@ use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
 use super::tally::Tally;
-use super::watch::{Forecast, Watch};
+use super::watch::{Forecast, Likely, Watch};
 use crate::base::lanes::LANES;
 use crate::compile::study::{MeasureKind, Query, RankOption, Target};
 use crate::stats::ranking::{Booleans, Choice, Each, Race, Ranking, Scores, Share};
@@ -257,6 +257,23 @@ impl<'s> RankSampling<'s> {
         Ok(all)
     }
 
+    /// Requests the trials of a round, and those that most likely follow: of all options that are still open.
+    fn request(&self, round: &Round, executor: &dyn Executor, (left, most): (u64, u64)) {
+        let arms = self.setup.options.len();
+        let known = match self.setup.rule {
+            (epsilon, delta, Ranking::Okamoto) => {
+                Some(Likely::exactly(stats::ranking::size(arms, epsilon / self.scale(), delta)))
+            }
+            _ => None,
+        };
+        for share in &round.shares {
+            let ahead = forecast::ahead(share.from, known).max(share.to).min(most);
+            let ahead = ahead.min(share.from.saturating_add(left));
+            let advice = self.setup.options[share.arm].advice;
+            executor.request(&self.jobs[self.job_of[share.arm]], advice, share.from..ahead);
+        }
+    }
+
     /// Runs the first round, and forecasts from it what the ranking is likely to take.
     pub(super) fn run_pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
         let round = self.round(budget.max_trials);
@@ -339,6 +356,10 @@ impl<'s> RankSampling<'s> {
             };
             // What follows an unfinished trial is not looked at, so that their number says which they are.
             let prefix = (0..wanted).take_while(|place| rows.row(*place).is_some()).count();
+            if prefix < wanted && executor.is_stored() {
+                self.request(&round, executor, (left, budget.max_trials));
+                share.lack();
+            }
             if prefix < wanted && !budget.must_stop() {
                 // What a round had finished counts only where the call ends: else their number would not say which they are.
                 return Ok(None);

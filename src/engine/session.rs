@@ -10,7 +10,7 @@ use super::executor::Executor;
 use super::fault::{Fault, MOST_VALUES};
 use super::flaw::Flaw;
 use super::forecast::PilotStatistics;
-use super::outcome::{CallResult, Failure, QueryResult, Stop};
+use super::outcome::{CallResult, Failure, QueryResult};
 use super::placement::all_placeable;
 use super::prepared::PreparedWorld;
 use super::procedure::Procedure;
@@ -40,7 +40,9 @@ pub fn run(
     let session = Session { call, budget, worlds: &worlds };
     let mut groups = session.groups(&asked)?;
     watch.samples();
-    if let Some(total) = forecast_groups(&mut groups, executor, budget)? {
+    if !executor.is_stored()
+        && let Some(total) = forecast_groups(&mut groups, executor, budget)?
+    {
         watch.forecast(&total);
     }
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
@@ -130,7 +132,7 @@ fn consumed(asked: &[&Query], results: &[Option<QueryResult>]) -> u64 {
 
 /// The call that gives the same results again. Where the clock ended something, each query has its own.
 fn again(call: &Call<'_>, budget: &Budget, results: &[QueryResult]) -> String {
-    if results.iter().any(|r| matches!(r.stopped_by, Stop::Deadline | Stop::Interrupt)) {
+    if results.iter().any(|r| r.stopped_by.is_early()) {
         let each: Vec<&str> = results.iter().map(|r| r.replay.as_str()).collect();
         return each.join("\n");
     }
@@ -407,8 +409,10 @@ impl<'a> Session<'a> {
         watch: &dyn Watch,
     ) -> Result<Turn<'q>, Fault> {
         let Group { mut places, sampling } = group;
-        let answers = Answers { call: self.call, budget: self.budget };
-        let budgets = (self.budget, share);
+        // Outcomes that are not there are missing for one group: it ends, and the others go on.
+        let budget = if executor.is_stored() { share } else { self.budget };
+        let answers = Answers { call: self.call, budget };
+        let budgets = (budget, share);
         let mut broken = None;
         let results = match sampling {
             Sampling::Estimate(mut estimate) => {

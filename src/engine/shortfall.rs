@@ -24,7 +24,7 @@ impl Shortfall {
 impl QueryResult {
     /// How it falls short of what it asks, if it does. A `check` that does is undecided.
     pub fn shortfall(&self) -> Option<Shortfall> {
-        let short = matches!(self.stopped_by, Stop::Cap | Stop::Deadline | Stop::Interrupt);
+        let short = self.stopped_by == Stop::Cap || self.stopped_by.is_early();
         (self.verdict.is_none() && short).then_some(match self.consumed.counts.trials {
             0 => Shortfall::NotBegun,
             _ => Shortfall::Incomplete,

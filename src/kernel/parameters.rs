@@ -80,7 +80,7 @@ impl Parameters {
         let agent = self.scenario.agents.get(who.0.0 as usize)?;
         let mut values = self.draw(who, key).ok()?;
         let recorded = agent.start.driving().norm();
-        if agent.route == Route::Onward && recorded > 0.0 {
+        if agent.route == Route::Onward && recorded > 0.0 && !agent.start.own_speed {
             values[Parameter::Speed as usize] = recorded;
         }
         Some(values)

@@ -4,11 +4,6 @@ use crate::engine::{Fault, Flaw};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
-/// An argument of the call is wrong.
-fn call(fault: &Fault, hint: &str) -> Diagnostic {
-    Diagnostic::placeless(Code::E0705, fault.to_string()).hint(hint)
-}
-
 /// The diagnostics of a fault of the engine.
 pub fn refusals(fault: &Fault) -> Vec<Diagnostic> {
     match fault {
@@ -42,8 +37,8 @@ pub fn refusal(fault: &Fault) -> Diagnostic {
             .hint("use shorter bounds or a longer step, which need less memory"),
         Fault::Unsuitable => Diagnostic::placeless(Code::E0603, fault.to_string())
             .hint("see `smc explain E0603` for the procedures of each query"),
-        Fault::Rank { .. } => call(fault, "all processes of a call must run the same program"),
-        Fault::Threads(_) => call(fault, "use fewer threads: `--threads 1`"),
+        Fault::Threads(_) => Diagnostic::placeless(Code::E0705, fault.to_string())
+            .hint("use fewer threads: `--threads 1`"),
     }
 }
 

@@ -117,6 +117,10 @@ pub struct Start {
     pub velocity: Vec2,
     /// The velocity that it wants, m/s, where it goes on as it started; `None` for that with which it starts.
     pub driving: Option<Vec2>,
+    /// By how much the direction that it wants is turned from that of `driving`, rad; for who goes on as it started.
+    pub turn: Law,
+    /// Whether who goes on wants the speed of its parameter `speed`, instead of that with which it started.
+    pub own_speed: bool,
     /// Ids of the people who were seen there; none where the start is declared.
     pub seen: Vec<u32>,
 }
@@ -128,6 +132,8 @@ impl Start {
             position: Position::Point(point),
             velocity: Vec2::new(0.0, 0.0),
             driving: None,
+            turn: Law::Constant(0.0),
+            own_speed: false,
             seen: Vec::new(),
         }
     }
@@ -166,13 +172,27 @@ pub enum Route {
     },
     /// On as it started: its driving velocity (`Start::driving`) stays the same for ever.
     Onward,
+    /// To one of some goals, where it stands.
+    OneOf {
+        /// The goals.
+        legs: Vec<Leg>,
+        /// The probability of each.
+        weights: Vec<f64>,
+    },
 }
 
 impl Route {
-    /// Its goals in order.
+    /// Its legs in order, or those of which it has one.
+    pub fn legs(&self) -> &[Leg] {
+        match self {
+            Self::Legs { legs, .. } | Self::OneOf { legs, .. } => legs,
+            Self::Onward => &[],
+        }
+    }
+
+    /// The goals of its legs.
     pub fn goals(&self) -> impl Iterator<Item = &Goal> {
-        let legs: &[Leg] = if let Self::Legs { legs, .. } = self { legs } else { &[] };
-        legs.iter().filter_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None })
+        self.legs().iter().filter_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None })
     }
 }
 

@@ -13,8 +13,8 @@ use crate::kernel::Program;
 use crate::kernel::run::{Address, End, Run};
 use crate::kernel::start::Fault;
 use crate::model::{
-    Agent, AgentId, Barrier, Behaviours, Body, Kind, Law, Parameter, Position, Processes, Route, Scenario,
-    Scene, Start, TOP_SPEED,
+    Agent, AgentId, Barrier, Behaviours, Body, Kind, Law, Parameter, Processes, Route, Scenario, Scene,
+    Start, TOP_SPEED,
 };
 use std::sync::Arc;
 
@@ -131,10 +131,9 @@ impl SocialForce {
             entity,
             body: Arc::clone(&self.body),
             start: Start {
-                position: Position::Point(walker.position),
                 velocity: walker.velocity,
                 driving: Some(driving(&walker.end)),
-                seen: Vec::new(),
+                ..Start::at_rest(walker.position)
             },
             route: Route::Onward,
             group: None,

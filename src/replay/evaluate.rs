@@ -9,6 +9,7 @@ use super::formulas::targets;
 use super::instants::Instant;
 use super::kinds::{CONSTANT, with_kind};
 use super::monitor::happened;
+use super::region::{Fit, HORIZONS};
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
@@ -20,6 +21,7 @@ use crate::kernel::driver::MakeDrivers;
 use crate::model::{AgentId, Parameter};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::SourceId;
+use std::collections::BTreeSet;
 
 /// Displacements are those of so many seconds, or of the horizon if that is shorter.
 pub const PREDICTED: f64 = 4.8;
@@ -55,10 +57,15 @@ pub struct Predicted {
     pub unresolved: Vec<u64>,
     /// Displacements.
     pub displacements: Vec<Displacement>,
+    /// Recorded positions among predicted ones, after each of [`HORIZONS`] that is within the horizon.
+    pub fits: Vec<PositionFits>,
 }
 
+/// Whose positions, and how they fit.
+pub type PositionFits = (u32, [Option<Fit>; HORIZONS.len()]);
+
 /// What one instant yields: for each property a probability and what happened.
-type Row = (Vec<Option<(f64, bool)>>, Option<Displacement>);
+type Row = (Vec<Option<(f64, bool)>>, Option<(Displacement, [Option<Fit>; HORIZONS.len()])>);
 
 /// The instants at which the user moves, was there at the last instant before, and is there for `seconds` from then on.
 pub fn eligible(
@@ -126,7 +133,12 @@ pub fn evaluate(
     let mut all = Predicted {
         predictions: vec![Vec::new(); count],
         unresolved: vec![0; count],
-        displacements: rows.iter().filter_map(|(_, displacement)| *displacement).collect(),
+        displacements: rows.iter().filter_map(|(_, ways)| Some(ways.as_ref()?.0)).collect(),
+        fits: rows
+            .iter()
+            .filter_map(|(_, ways)| ways.as_ref())
+            .map(|(one, fits)| (one.person, *fits))
+            .collect(),
     };
     for (instant, (row, _)) in instants.iter().zip(&rows) {
         for (k, cell) in row.iter().enumerate() {
@@ -156,7 +168,10 @@ fn predict(
     let (every, dt) = (replay.recording.step(), prepared.program.dt);
     let last = PREDICTED.min(world.scenario.clock.seconds(Tick(prepared.horizon.0)));
     let times: Vec<f64> = (1..=(last / every + 1e-9).floor() as u64).map(|k| k as f64 * every).collect();
-    let ticks: Vec<u64> = times.iter().map(|time| (time / dt).round() as u64).collect();
+    let tick = |time: &f64| (time / dt).round() as u64;
+    let horizons = HORIZONS.iter().filter(|time| **time <= last + 1e-9);
+    let ticks: BTreeSet<u64> = times.iter().chain(horizons).map(tick).collect();
+    let ticks: Vec<u64> = ticks.into_iter().collect();
     let followed = Followed { agent: AgentId(own as u32), ticks: &ticks };
     let Ok(found) = sample(prepared, columns, series, trials, followed) else {
         return (vec![None; columns.len()], None);
@@ -170,10 +185,17 @@ fn predict(
         (count > 0).then(|| held as f64 / count as f64)
     };
     let cells = (0..columns.len()).map(|k| share(k).zip(truths.get(k).copied().flatten())).collect();
-    (
-        cells,
-        displacement(replay, instant, &times, &found.paths, 2.0 * agents[own].body[Parameter::Radius].mean()),
-    )
+    let place = |time: &f64| ticks.binary_search(&tick(time)).ok();
+    let at_times = |way: &Vec<Vec2>| times.iter().filter_map(|time| way.get(place(time)?).copied()).collect();
+    let ways: Vec<Vec<Vec2>> = found.paths.iter().map(at_times).collect();
+    let reach = 2.0 * agents[own].body[Parameter::Radius].mean();
+    let fit = |time: f64| {
+        let predicted: Vec<Vec2> =
+            found.paths.iter().filter_map(|way| way.get(place(&time)?).copied()).collect();
+        let seen = course(&replay.recording, instant.person, instant.time + time, Beyond::Unresolved);
+        Fit::of(&predicted, seen?.0)
+    };
+    (cells, displacement(replay, instant, &times, &ways, reach).map(|one| (one, HORIZONS.map(fit))))
 }
 
 /// Distances of ways from the recorded one.

@@ -11,6 +11,9 @@ use crate::syntax::source::{Source, SourceId};
 /// The kind without forces: everybody keeps the velocity.
 pub const CONSTANT: &str = "constant";
 
+/// Fields of agents that would change the velocity.
+const CHANGING: [&str; 4] = ["heading", "speed", "route", "noise"];
+
 /// A scenario all of whose people have the kind of a name: one that it declares, a preset or the beginning of the name of
 /// one, or `constant`. Where the kind is not declared, its text is a source of its own.
 ///
@@ -46,10 +49,14 @@ pub(super) fn with_kind(
         changed.items.splice(0..0, kind.items);
     }
     for item in &mut changed.items {
-        match item {
-            Item::Agents(decl) if decl.recorded.is_some() => name.clone_into(&mut decl.kind.name),
-            Item::Group(decl) if decl.recorded.is_some() => name.clone_into(&mut decl.kind.name),
-            _ => {}
+        let (kind, body) = match item {
+            Item::Agents(decl) if decl.recorded.is_some() => (&mut decl.kind, &mut decl.body),
+            Item::Group(decl) if decl.recorded.is_some() => (&mut decl.kind, &mut decl.body),
+            _ => continue,
+        };
+        name.clone_into(&mut kind.name);
+        if name == CONSTANT {
+            body.retain(|field| !CHANGING.contains(&field.name.name.as_str()));
         }
     }
     Ok((changed, source))

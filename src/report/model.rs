@@ -248,6 +248,9 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     };
     let _ = writeln!(out, "      starts {place}, {}", velocity(agent.start.velocity));
     let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+    if agent.start.turn != Law::Constant(0.0) {
+        let _ = writeln!(out, "      turned from the recorded heading by {}", law(&agent.start.turn, "rad"));
+    }
 }
 
 /// How wide the body of a group is, of persons whose radius is at most `drawn`.
@@ -288,6 +291,7 @@ fn velocity(v: Vec2) -> String {
 pub(super) fn way(scenario: &Scenario, route: &Route) -> String {
     match route {
         Route::Onward => "keeps its initial direction".to_owned(),
+        Route::OneOf { legs, .. } => format!("goes to one of {} destinations", legs.len()),
         Route::Legs { legs, .. } if legs.is_empty() => "stands".to_owned(),
         Route::Legs { legs, then_leave } => {
             let legs: Vec<String> = legs

@@ -66,11 +66,7 @@ pub(super) fn is_open(scenario: &Scenario) -> bool {
 }
 
 fn goals<'a>(scenario: &'a Scenario, route: &'a Route) -> impl Iterator<Item = Vec2> + 'a {
-    let legs = match route {
-        Route::Legs { legs, .. } => legs.as_slice(),
-        Route::Onward => &[],
-    };
-    legs.iter().flat_map(|leg| match leg {
+    route.legs().iter().flat_map(|leg| match leg {
         Leg::To(Goal::Point(point)) => vec![*point],
         Leg::To(Goal::Region(id)) => {
             scenario.scene.regions.get(id.0 as usize).map_or(Vec::new(), |region| corners(&region.shape))

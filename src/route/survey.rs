@@ -4,7 +4,7 @@
 use super::atlas::Atlas;
 use super::wayfinder::is_drawn;
 use crate::base::geometry::{Shape, Vec2};
-use crate::model::{Agent, AgentId, Goal, Obstacle, Parameter, Position, Scenario, Scene, Sight};
+use crate::model::{Agent, AgentId, Goal, Obstacle, Parameter, Position, Route, Scenario, Scene, Sight};
 
 /// A start or goal is looked at in so many rows of so many places; and in more where none of these has a way.
 const ROWS: u32 = 8;
@@ -98,6 +98,7 @@ pub(super) fn stretches<'s>(scene: &'s Scene, agent: &'s Agent) -> Vec<Stretch<'
         Position::Within(shape) => Some((Place::Shape(shape), "its start".to_owned())),
         Position::Near { .. } => None,
     };
+    let drawn = matches!(agent.route, Route::OneOf { .. });
     agent
         .route
         .goals()
@@ -107,7 +108,9 @@ pub(super) fn stretches<'s>(scene: &'s Scene, agent: &'s Agent) -> Vec<Stretch<'
                 Goal::Point(point) => Place::Point(*point),
                 Goal::Region(region) => Place::Shape(&scene.regions[region.0 as usize].shape),
             };
-            Stretch { origin: origin.replace((end, name.clone())), goal, end, name }
+            // Who has one of some goals goes to each from the start.
+            let from = if drawn { origin.clone() } else { origin.replace((end, name.clone())) };
+            Stretch { origin: from, goal, end, name }
         })
         .collect()
 }

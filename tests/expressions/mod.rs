@@ -59,8 +59,7 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         start: Start {
             position: Position::Point(p(0.0, 0.0)),
             velocity: p(0.0, 0.0),
-            driving: None,
-            seen: Vec::new(),
+            ..Start::at_rest(Vec2::zeros())
         },
         route: Route::Onward,
         group: None,

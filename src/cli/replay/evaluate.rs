@@ -6,9 +6,11 @@ use crate::cli::complaint;
 use crate::cli::terminal::Colors;
 use crate::gait;
 use crate::model::Scenario;
-use crate::replay::{CONSTANT, Evaluating, Instant, PREDICTED, Predicted, eligible, evaluate, user_kind};
+use crate::replay::{
+    CONSTANT, Evaluating, Fit, HORIZONS, Instant, PREDICTED, Predicted, eligible, evaluate, user_kind,
+};
 use crate::report::evaluate::{
-    Displacement, Evaluated, EvaluatedKind, EvaluatedProperty, to_json, to_svg, to_text, write_csv,
+    Coverage, Displacement, Evaluated, EvaluatedKind, EvaluatedProperty, to_json, to_svg, to_text, write_csv,
 };
 use crate::route::Ways;
 use crate::stats::bootstrap::{Bootstrap, DRAWS, Estimate, ratio};
@@ -66,6 +68,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
             })
             .collect(),
         displacement: Some(persons.displacement(own, &bootstrap)),
+        coverage: persons.coverage(own, &bootstrap),
     };
     let evaluated = Evaluated {
         model: arguments.replayed.model.scenario.clone(),
@@ -155,5 +158,22 @@ impl Persons {
             best_fde: mean(|one| one.best_last),
             collisions: mean(|one| one.collisions),
         }
+    }
+
+    fn coverage(&self, found: &Predicted, bootstrap: &Bootstrap) -> Vec<Coverage> {
+        let after = |(k, seconds): (usize, &f64)| {
+            let mean = |of: fn(&Fit) -> f64| {
+                let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
+                for (person, fits) in &found.fits {
+                    let Some(fit) = &fits[k] else { continue };
+                    let part = &mut parts[self.number(*person) as usize];
+                    (part[0], part[1]) = (part[0] + of(fit), part[1] + 1.0);
+                }
+                bootstrap.estimate(ratio(&parts))
+            };
+            let (share, log_density) = (mean(|fit| f64::from(fit.inside)), mean(|fit| fit.log_density));
+            Coverage { seconds: *seconds, share, log_density }
+        };
+        HORIZONS.iter().enumerate().map(after).collect()
     }
 }

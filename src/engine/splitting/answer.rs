@@ -134,7 +134,7 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
             result.high = if sampled { plain.high } else { 1.0 };
             result.interval =
                 format!("{}, of the plain trials", words::interval(plain.coverage, DISAGREEMENT));
-            let stopped = matches!(found.stop, Stop::Cap | Stop::Deadline | Stop::Interrupt);
+            let stopped = found.stop == Stop::Cap || found.stop.is_early();
             result.warnings.push(match spread {
                 // The bound is that of one side, at the error that was asked for.
                 Some(spread) if over && spread.mean <= plain.high => format!(

@@ -5,6 +5,9 @@ mod answer;
 mod batches;
 mod path;
 mod paths;
+mod record;
+
+pub use record::{RunRecord, SplitRun};
 
 use super::budget::Budget;
 use super::cell::{Item, Reading};
@@ -14,10 +17,10 @@ use super::outcome::Stop;
 use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
 use super::tally::Tally;
-use super::watch::{Forecast, Likely, Watch};
+use super::watch::{Forecast, Likely, Nobody, Watch};
 use crate::base::random::TrialKey;
 use crate::compile::study::Query;
-use crate::stats::splitting::{Adaptive, Effort, Rule, Scheme, Spread, Start};
+use crate::stats::splitting::{Rule, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
 use batches::Batches;
 use path::Path;
@@ -106,11 +109,19 @@ struct Running {
     scheme: Box<dyn Scheme>,
     branch: u16,
     paths: Vec<Path>,
+    steps: u64,
+    lost: u64,
 }
 
 impl Running {
-    fn new(scheme: Box<dyn Scheme>, branch: u16) -> Self {
-        Self { scheme, branch, paths: Vec::new() }
+    fn new(run: &SplitRun, seed: u64) -> Result<Self, Fault> {
+        Ok(Self { scheme: run.scheme(seed)?, branch: run.branch, paths: Vec::new(), steps: 0, lost: 0 })
+    }
+
+    fn record(self) -> RunRecord {
+        let Self { scheme, paths, steps, lost, .. } = self;
+        let (estimate, levels) = (scheme.estimate(), scheme.levels().to_vec());
+        RunRecord { paths: paths.len() as u64, steps, lost, estimate, levels }
     }
 
     /// The paths that it wants.
@@ -149,25 +160,14 @@ fn run(
     } else {
         clopper_pearson::upper(most, rule.delta)
     };
-    let mut found = Found {
-        plain,
-        bound,
-        interval,
-        spreads: None,
-        levels: 0.0,
-        paths: 0,
-        steps: 0,
-        lost: 0,
-        blind: true,
-        stop: stop.unwrap_or(Stop::Plan),
-    };
+    let mut found = Found { stop: stop.unwrap_or(Stop::Plan), ..Found::new(plain, bound, interval) };
     if stop.is_some() {
         return Ok(found);
     }
     let batches = Batches::new(question.prepared, [question.column, question.level]);
     let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
-        runs(question, found, &mut |runs, found| {
-            advance(&batches, runs, lost_reaches, question, found, executor, budget, watch)
+        runs(question, lost_reaches, found, &mut |runs, found| {
+            advance(&batches, runs, (question.query, question.seed), found, executor, budget, watch)
         })
     };
     if let Some(low) = reading(false, &mut found)? {
@@ -178,41 +178,36 @@ fn run(
     Ok(found)
 }
 
-/// Runs the paths of some runs; whether all of them came to an end.
-type RunPaths<'f> = &'f mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>;
+/// What some runs came to; `None` where they did not come to an end.
+type MakeRuns<'f> = &'f mut dyn FnMut(&[SplitRun], &mut Found) -> Result<Option<Vec<RunRecord>>, Fault>;
 
-/// All runs under one reading of lost paths; `None` where they did not come to an end. `advance` finishes some of them.
-fn runs(question: &Question<'_>, found: &mut Found, advance: RunPaths<'_>) -> Result<Option<Spread>, Fault> {
+/// All runs under one reading of lost paths; `None` where they did not come to an end.
+fn runs(
+    question: &Question<'_>,
+    lost_reaches: bool,
+    found: &mut Found,
+    make: MakeRuns<'_>,
+) -> Result<Option<Spread>, Fault> {
     let rule = question.rule;
-    let (replicas, seed) = (rule.replicas as usize, question.seed);
+    let run = |branch: u64, levels: &[f64]| SplitRun {
+        world: question.prepared.number.unwrap_or_default(),
+        columns: [question.column, question.level],
+        rule,
+        branch: branch as u16,
+        lost_reaches,
+        levels: levels.to_vec(),
+    };
     let mut levels = Vec::new();
     if !rule.adaptive {
-        // A pilot run finds the levels; its own estimate is not used.
-        let branch = 1 + rule.runs as u16;
-        let pilot = Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, branch)?;
-        let mut runs = [Running::new(Box::new(pilot), branch)];
-        if !advance(&mut runs, found)? {
-            return Ok(None);
-        }
-        levels.extend(runs[0].scheme.levels().iter().copied().filter(|level| level.is_finite()));
+        let Some(pilot) = make(&[run(rule.runs + 1, &[])], found)? else { return Ok(None) };
+        levels.extend(pilot[0].levels.iter().copied().filter(|level| level.is_finite()));
     }
-    let mut runs = Vec::with_capacity(rule.runs as usize);
-    for run in 0..rule.runs as u16 {
-        let branch = 1 + run;
-        let scheme: Box<dyn Scheme> = if rule.adaptive {
-            Box::new(Adaptive::new(replicas, rule.kill as usize, seed, branch)?)
-        } else {
-            Box::new(Effort::new(replicas, levels.clone(), seed, branch)?)
-        };
-        runs.push(Running::new(scheme, branch));
-    }
-    if !advance(&mut runs, found)? {
-        return Ok(None);
-    }
-    let estimates: Vec<f64> = runs.iter().map(|run| run.scheme.estimate()).collect();
-    let sum: usize = runs.iter().map(|run| run.scheme.levels().len()).sum();
+    let all: Vec<SplitRun> = (1..=rule.runs).map(|branch| run(branch, &levels)).collect();
+    let Some(runs) = make(&all, found)? else { return Ok(None) };
+    let estimates: Vec<f64> = runs.iter().map(|run| run.estimate).collect();
+    let sum: usize = runs.iter().map(|run| run.levels.len()).sum();
     found.levels = sum as f64 / runs.len() as f64;
-    found.blind &= runs.iter().all(|run| run.scheme.levels().iter().all(|level| !level.is_finite()));
+    found.blind &= runs.iter().all(|run| run.levels.iter().all(|level| !level.is_finite()));
     Ok(Some(Spread::of(&estimates, rule.delta)?))
 }
 
@@ -235,7 +230,13 @@ fn plainly(
         let items = Item::run(from, ROUND.min(most - from));
         let cells = executor.run(&job, &items, budget)?;
         for (item, row) in items.iter().zip(cells.rows()) {
-            let Some(row) = row else { return Ok((tally, Some(budget.stopped_by()))) };
+            let Some(row) = row else {
+                if executor.is_stored() {
+                    executor.request(&job, None, item.index..most);
+                    budget.lack();
+                }
+                return Ok((tally, Some(budget.stopped_by())));
+            };
             if row[0].reading == Reading::Faulty {
                 return Err(super::trial::fault(question.prepared, *item, question.seed.into()));
             }
@@ -246,48 +247,122 @@ fn plainly(
     Ok((tally, (most < planned).then_some(Stop::Cap)))
 }
 
-/// Runs go on side by side until all are finished; false if they are not.
+impl Found {
+    const fn new(plain: Tally, bound: f64, interval: stats::Interval) -> Self {
+        Self {
+            plain,
+            bound,
+            interval,
+            spreads: None,
+            levels: 0.0,
+            paths: 0,
+            steps: 0,
+            lost: 0,
+            blind: true,
+            stop: Stop::Plan,
+        }
+    }
+
+    /// Whether so many more paths may be run; else why not is noted.
+    fn admits(&mut self, paths: u64, budget: &Budget) -> bool {
+        let capped = self.plain.counts.trials + self.paths + paths > budget.max_trials;
+        let stop = budget.reason_to_stop().or(capped.then_some(Stop::Cap));
+        self.stop = stop.unwrap_or(self.stop);
+        stop.is_none()
+    }
+
+    fn count(&mut self, (paths, steps, lost): (u64, u64, u64), lost_reaches: bool) {
+        self.paths += paths;
+        self.steps += steps;
+        self.lost += if lost_reaches { 0 } else { lost };
+    }
+}
+
+/// Runs go on side by side until all are finished; `None` if they are not. Runs that are stored are not made again.
 fn advance(
     batches: &Batches<'_>,
-    runs: &mut [Running],
-    lost_reaches: bool,
-    question: &Question<'_>,
+    runs: &[SplitRun],
+    (query, seed): (&Query, u64),
     found: &mut Found,
     executor: &dyn Executor,
     budget: &Budget,
     watch: &dyn Watch,
-) -> Result<bool, Fault> {
+) -> Result<Option<Vec<RunRecord>>, Fault> {
+    if executor.is_stored() {
+        let stored: Vec<_> = runs.iter().map(|run| executor.record(run)).collect();
+        let Some(stored) = stored.into_iter().collect::<Option<Vec<_>>>() else {
+            budget.lack();
+            found.stop = budget.stopped_by();
+            return Ok(None);
+        };
+        // Where the model is wrong in a run, or the budget ends runs on their way, they are made here.
+        if let Some(records) = stored.into_iter().collect::<Option<Vec<RunRecord>>>()
+            && found.admits(records.iter().map(|one| one.paths).sum(), budget)
+        {
+            let count = |one: &RunRecord| found.count((one.paths, one.steps, one.lost), runs[0].lost_reaches);
+            records.iter().for_each(count);
+            return Ok(Some(records));
+        }
+    }
+    make(batches, runs, (&query.text, seed), found, executor, budget, watch)
+}
+
+/// Makes runs side by side; `None` if not all of them came to an end.
+fn make(
+    batches: &Batches<'_>,
+    runs: &[SplitRun],
+    (query, seed): (&str, u64),
+    found: &mut Found,
+    executor: &dyn Executor,
+    budget: &Budget,
+    watch: &dyn Watch,
+) -> Result<Option<Vec<RunRecord>>, Fault> {
+    let mut running = runs.iter().map(|run| Running::new(run, seed)).collect::<Result<Vec<_>, _>>()?;
     loop {
-        let paths: Vec<Vec<Path>> = runs.iter_mut().map(|run| run.wanted(question.seed)).collect();
+        let paths: Vec<Vec<Path>> = running.iter_mut().map(|run| run.wanted(seed)).collect();
         let together: Vec<Path> = paths.iter().flatten().cloned().collect();
         if together.is_empty() {
-            return Ok(true);
+            return Ok(Some(running.into_iter().map(Running::record).collect()));
         }
-        if let Some(stop) = budget.reason_to_stop() {
-            found.stop = stop;
-            return Ok(false);
-        }
-        let consumed = found.plain.counts.trials + found.paths;
-        if consumed + together.len() as u64 > budget.max_trials {
-            found.stop = Stop::Cap;
-            return Ok(false);
+        if !found.admits(together.len() as u64, budget) {
+            return Ok(None);
         }
         let Some(ended) = batches.run(&together, executor, budget)? else {
             found.stop = budget.stopped_by();
-            return Ok(false);
+            return Ok(None);
         };
-        found.paths += ended.len() as u64;
-        found.steps += ended.iter().map(|one| one.steps).sum::<u64>();
-        if !lost_reaches {
-            found.lost += ended.iter().filter(|one| one.lost).count() as u64;
-        }
         let mut ended = ended.into_iter();
-        for (run, wanted) in runs.iter_mut().zip(&paths) {
-            if !wanted.is_empty() {
-                run.scheme
-                    .feed(ended.by_ref().take(wanted.len()).map(|one| one.read(lost_reaches)).collect());
+        for ((run, of), wanted) in running.iter_mut().zip(runs).zip(&paths) {
+            let own: Vec<_> = ended.by_ref().take(wanted.len()).collect();
+            if own.is_empty() {
+                continue;
             }
+            let steps = own.iter().map(|one| one.steps).sum();
+            let lost = own.iter().filter(|one| one.lost).count() as u64;
+            found.count((own.len() as u64, steps, lost), of.lost_reaches);
+            run.steps += steps;
+            run.lost += lost;
+            run.scheme.feed(own.into_iter().map(|one| one.read(of.lost_reaches)).collect());
         }
-        watch.consumed(&question.query.text, found.plain.counts.trials + found.paths, None);
+        watch.consumed(query, found.plain.counts.trials + found.paths, None);
+    }
+}
+
+/// Makes one run on its own; `None` where the model is wrong in it, or the budget ends it.
+///
+/// # Errors
+/// For columns that no monitor can watch, and rules that no procedure accepts.
+pub(super) fn record(
+    run: &SplitRun,
+    (prepared, seed): (&PreparedWorld, u64),
+    executor: &dyn Executor,
+    budget: &Budget,
+) -> Result<Option<RunRecord>, Fault> {
+    let batches = Batches::new(prepared, run.columns);
+    let interval = clopper_pearson::interval(Counts::default(), DISAGREEMENT);
+    let mut found = Found::new(Tally::default(), 1.0, interval);
+    match make(&batches, std::slice::from_ref(run), ("", seed), &mut found, executor, budget, &Nobody) {
+        Err(Fault::Model(_)) => Ok(None),
+        made => Ok(made?.and_then(|mut records| records.pop())),
     }
 }

@@ -63,9 +63,9 @@ pub(super) enum Change {
 }
 
 impl Walk<'_> {
-    /// A step of the gait from a pose.
-    pub(super) fn drawn(&self, pose: &Pose, draws: Draws) -> Stance {
-        self.gait.step(&pose.stance, pose.foot, self.share, draws)
+    /// Steps of the gait from a pose.
+    pub(super) fn drawn(&self, pose: &Pose, mut draws: impl Iterator<Item = Draws>) -> Vec<Stance> {
+        self.gait.steps(&pose.stance, pose.foot, self.share, &mut draws)
     }
 
     /// A drawn step from a pose, from which `way` leads to the goal; `None` if no way leads on from its end.

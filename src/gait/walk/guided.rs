@@ -32,15 +32,16 @@ pub(super) enum Rejected {
 
 /// A choice among options by key (log weight and Gumbel noise): the best one that is clear, its gap to others weighed.
 pub(super) fn choose<T: Clone>(
-    options: &mut [(f64, T)],
+    options: &[(f64, T)],
     is_clear: impl Fn(&T) -> bool,
     gap: impl Fn(&T) -> Option<f64>,
 ) -> Result<(T, f64), Rejected> {
-    options.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut order: Vec<(f64, &T)> = options.iter().map(|(key, option)| (*key, option)).collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut best: Option<(f64, &T, f64)> = None;
     let mut rejected = Rejected::Barriers;
-    for (key, option) in options.iter() {
-        if best.is_some_and(|(known, ..)| known >= *key) {
+    for (key, option) in order {
+        if best.is_some_and(|(known, ..)| known >= key) {
             break;
         }
         if !is_clear(option) {
@@ -73,8 +74,7 @@ impl Walk<'_> {
         others: Option<Gaps>,
     ) -> Result<(PlacedStep, Stance), Rejected> {
         let count = candidates.clamp(1, MOST);
-        let draws = |k: u32| Draws::of(self.stream, number, k);
-        let drawn = self.gait.steps(&pose.stance, pose.foot, self.share, &mut (0..count).map(draws));
+        let drawn = self.drawn(pose, (0..count).map(|k| Draws::of(self.stream, number, k)));
         let option = |pose: &Pose, k: u32, change: &dyn Fn(f64) -> Change| {
             let (noise, share) = self.choice(number, k);
             let found = self.candidate(pose, way, drawn[(k % count) as usize], change(share))?;
@@ -84,7 +84,7 @@ impl Walk<'_> {
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
         let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
         let mut options: Vec<_> = (0..count).filter_map(|k| option(pose, k, &steer(k))).collect();
-        let chosen = match choose(&mut options, is_clear, gap) {
+        let chosen = match choose(&options, is_clear, gap) {
             Ok((chosen, gap)) if gap >= WIDE => chosen,
             _ => {
                 // Somebody or a barrier is near: the same steps to the side and shorter, too.
@@ -98,7 +98,7 @@ impl Walk<'_> {
                         if pose.stance.last.is_none() { ASIDE * f64::from(k % 5) - 2.0 * ASIDE } else { 0.0 };
                     option(&Pose { heading: rotated(pose.heading, side), ..*pose }, k, &swerve(k))
                 }));
-                choose(&mut options, is_clear, gap)?.0
+                choose(&options, is_clear, gap)?.0
             }
         };
         Ok((chosen.step, chosen.after))

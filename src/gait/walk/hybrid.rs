@@ -93,10 +93,10 @@ impl HybridAStar {
                 let [u, _] = draws(0, k).uniform_pair(Draws::COUNT - 1);
                 from.heading = rotated(pose.heading, (2.0 * u - 1.0) * PI);
             }
-            if let Some(found) =
-                walk.candidate(&from, way, walk.drawn(&from, draws(0, k)), change(k % self.successors.max(1)))
-            {
-                tree.push(&found, left(&found), None, number);
+            for after in walk.drawn(&from, std::iter::once(draws(0, k))) {
+                if let Some(found) = walk.candidate(&from, way, after, change(k % self.successors.max(1))) {
+                    tree.push(&found, left(&found), None, number);
+                }
             }
         }
         let mut closed = BTreeSet::new();
@@ -123,10 +123,9 @@ impl HybridAStar {
             if expansions >= self.expansions.min(32_000) {
                 return Err(NoStep::Limit { expansions });
             }
-            for k in 0..self.successors.min(32) {
-                if let Some(found) =
-                    walk.candidate(&from, &way, walk.drawn(&from, draws(expansions, k)), change(k))
-                {
+            let drawn = walk.drawn(&from, (0..self.successors.min(32)).map(|k| draws(expansions, k)));
+            for (k, after) in (0..).zip(drawn) {
+                if let Some(found) = walk.candidate(&from, &way, after, change(k)) {
                     tree.push(&found, left(&found), Some(at), next);
                 }
             }

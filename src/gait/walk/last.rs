@@ -48,19 +48,28 @@ impl Walk<'_> {
         candidates: u32,
         others: Option<Gaps>,
     ) -> Result<Chain, Rejected> {
-        let option = |k: u32| {
-            let (cost, chain) = self.last_option(pose, steps, number, FIRST + k)?;
-            Some((self.choice(number, FIRST + k).0 - cost, chain))
+        let drawn = self.drawn(pose, (0..candidates).map(|k| Draws::of(self.stream, number, FIRST + k)));
+        let option = |(candidate, first): (u32, Stance)| {
+            let (cost, chain) = self.last_option(pose, (first, steps), number, candidate)?;
+            Some((self.choice(number, candidate).0 - cost, chain))
         };
         let is_clear = |chain: &Chain| chain.iter().all(|(step, _)| self.is_clear(step));
         let gap = |chain: &Chain| others.zip(chain.first()).map(|(others, (step, _))| others(step));
-        choose(&mut (0..candidates).filter_map(option).collect::<Vec<_>>(), is_clear, gap)
+        choose(&(FIRST..).zip(drawn).filter_map(option).collect::<Vec<_>>(), is_clear, gap)
             .map(|(chain, _)| chain)
     }
 
-    fn last_option(&self, pose: &Pose, steps: u32, number: u32, candidate: u32) -> Option<(f64, Chain)> {
-        let draw = |before: &Stance, foot, number| {
-            let after = self.gait.step(before, foot, self.share, Draws::of(self.stream, number, candidate));
+    /// The last steps of which `first` is the first one as it was drawn, with what they cost.
+    fn last_option(
+        &self,
+        pose: &Pose,
+        (first, steps): (Stance, u32),
+        number: u32,
+        candidate: u32,
+    ) -> Option<(f64, Chain)> {
+        let second = |before: &Stance| {
+            let draws = Draws::of(self.stream, number + 1, candidate);
+            let after = self.gait.step(before, pose.foot.other(), self.share, draws);
             Some((after.last?.1, after))
         };
         let place = |pose: &Pose, shape, mut after: Stance| {
@@ -70,24 +79,24 @@ impl Walk<'_> {
         };
         let mut chain = Chain::new();
         let (mut at, mut cost, mut common) = (*pose, 0.0, None);
+        let (mut shape, mut after) = (first.last?.1, first);
         if steps > 1 {
             let target = seen(self.goal - pose.at, pose.heading);
-            let (first, middle) = draw(&pose.stance, pose.foot, number)?;
-            let (second, _) = draw(&middle, pose.foot.other(), number + 1)?;
-            let both = end_of(&first) + turned(end_of(&second), first.curve().tangent(1.0));
+            let (next, _) = second(&first)?;
+            let both = end_of(&shape) + turned(end_of(&next), shape.curve().tangent(1.0));
             let scale = target.norm() / both.norm().max(1e-9);
             // Half of the turn of both steps.
             let by = angle(both, target);
-            let first = turn::bent(&first, by, scale);
-            if !turn::is_legal(&first) {
+            shape = turn::bent(&shape, by, scale);
+            if !turn::is_legal(&shape) {
                 return None;
             }
-            let (next, made) = place(pose, first, middle);
+            let (next, made) = place(pose, shape, first);
             (at, common) = (next, Some(scale));
             cost += by.abs();
             chain.push(made);
+            (shape, after) = second(&at.stance)?;
         }
-        let (shape, after) = draw(&at.stance, at.foot, number + steps - 1)?;
         let (shape, scale, by) = turn::fitted(&shape, seen(self.goal - at.at, at.heading))?;
         let uneven = scale / common.unwrap_or(scale);
         cost += by.abs() + (uneven - 1.0).abs();

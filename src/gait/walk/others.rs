@@ -23,10 +23,16 @@ pub struct OtherBody {
     pub radius: f64,
 }
 
-/// The smallest gap between a body of a radius on a step and others at constant velocity, m; infinite without others. Negative
-/// where they overlap.
+/// The smallest gap between a body of a radius on a step and others at constant velocity, m. Negative where they overlap.
+/// Gaps of [`WIDE`] and more make no difference: then it is not exact, and infinite without others.
 pub fn least_gap(step: &PlacedStep, radius: f64, others: &[OtherBody]) -> f64 {
     let places: [Vec2; LINES as usize + 1] = std::array::from_fn(|k| step.place(k as f64 / f64::from(LINES)));
+    let far = places.iter().map(|place| (place - places[0]).norm_squared()).fold(0.0, f64::max).sqrt();
+    // Who cannot come near while the step is made.
+    let is_near = |other: &&OtherBody| {
+        let reach = far + step.duration() * other.velocity.norm() + radius + other.radius + WIDE;
+        (other.at - places[0]).norm_squared() < reach * reach
+    };
     let gap = |other: &OtherBody| {
         // Seen from the other body the path is a chain of lines too.
         let seen = |k: usize| {
@@ -35,7 +41,7 @@ pub fn least_gap(step: &PlacedStep, radius: f64, others: &[OtherBody]) -> f64 {
         let distance = |k| Segment::new(seen(k), seen(k + 1)).distance(Vec2::zeros());
         (0..LINES as usize).map(distance).fold(f64::INFINITY, f64::min) - radius - other.radius
     };
-    others.iter().map(gap).fold(f64::INFINITY, f64::min)
+    others.iter().filter(is_near).map(gap).fold(f64::INFINITY, f64::min)
 }
 
 /// The logarithm of the weight of a step with a gap; `None` if it meets another body.

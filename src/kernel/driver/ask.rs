@@ -31,6 +31,7 @@ fn one(drive: &Drive, state: &mut State, slot: Slot) {
     let stage = &drive.stages[way.stage as usize];
     let (legs, then_leave) = match &drive.routes[stage.route as usize] {
         Route::Legs { legs, then_leave } => (&legs[stage.at.min(legs.len())..], *then_leave),
+        Route::OneOf { legs, .. } => (legs.get(stage.at..=stage.at).unwrap_or_default(), false),
         Route::Onward => (&[][..], false),
     };
     let held = state.plans.held(slot);

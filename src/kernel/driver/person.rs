@@ -4,14 +4,14 @@
 use super::stage::{Drive, Stage, Target};
 use crate::base::geometry::{Vec2, rotated};
 use crate::base::lanes::Mask;
-use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
 use crate::base::tick::steps_over;
 use crate::kernel::code::ground::Ground;
 use crate::kernel::code::lanes::Vector;
 use crate::kernel::plan::Occasion;
 use crate::kernel::state::route::Halt;
 use crate::kernel::state::{Slot, State, Way};
-use crate::model::{Law, Move, Parameter, Start};
+use crate::model::{Law, Move, Parameter, Route, Start};
 use fearless_simd::{Level, dispatch, prelude::*};
 
 /// How far from a point the line across it may be passed so that it counts as reached, m.
@@ -22,6 +22,10 @@ pub(super) const NO_LENGTH: f64 = 1e-24;
 
 /// What angles of advice are measured from where nobody knows a direction.
 const EAST: Vec2 = Vec2::new(1.0, 0.0);
+
+/// The numbers of the draws of what somebody wants, from the names of the fields.
+const TURN: u32 = name_hash("heading") as u32;
+const GOAL: u32 = name_hash("route") as u32;
 
 /// What one round of a detour adds to the number of a draw.
 const ROUND: u32 = 0x9E37_79B9;
@@ -303,12 +307,41 @@ impl<'a> Person<'a> {
         }
     }
 
+    /// A number that somebody wants, drawn once for each agent and trial.
+    fn drawn(&self, law: &Law, draw: u32) -> f64 {
+        law.constant().unwrap_or_else(|| law.draw(self.uniform(draw)))
+    }
+
+    /// A uniform number of the agent in this trial.
+    fn uniform(&self, draw: u32) -> f64 {
+        let later = self.state.queues.later(self.agent, self.state.layout.trial_of(self.lane));
+        let entity = self.drive.scenario.agents[self.agent].entity + later;
+        Stream::of(self.key(), entity, Purpose::Parameter).uniform(draw)
+    }
+
+    /// Which of the goals it has one of.
+    fn goal(&self) -> u32 {
+        let Route::OneOf { weights, .. } = &self.drive.scenario.agents[self.agent].route else { return 0 };
+        let uniform = self.uniform(GOAL);
+        let mut below = 0.0;
+        let chosen = weights.iter().position(|weight| {
+            below += weight;
+            uniform < below
+        });
+        // Rounding may leave the sum below 1.
+        let last = || weights.iter().rposition(|weight| *weight > 0.0);
+        chosen.or_else(last).unwrap_or(0) as u32
+    }
+
     /// Puts an agent at the beginning of its way. Its position, parameters and key must be in the state.
     pub(super) fn begin(mut self, start: &Start, advice: Option<(Move, u64)>) {
-        let moving = unit(start.driving());
+        let moving = unit(start.driving()).map(|ahead| match self.drawn(&start.turn, TURN) {
+            0.0 => ahead,
+            turn => rotated(ahead, turn),
+        });
         let speed = start.driving().norm();
         self.way = Way::default();
-        let own = self.drive.first[self.agent];
+        let own = self.drive.first[self.agent] + self.goal();
         let first = match advice {
             Some((Move::Route(number), _)) => self.drive.named(self.agent, number).unwrap_or(own),
             _ => own,
@@ -323,7 +356,7 @@ impl<'a> Person<'a> {
             .find_map(|stage| way_to(&stage.target, self.at(), self.radius()))
             .and_then(unit);
         let onward = matches!(self.drive.stages[own as usize].target, Target::Onward);
-        if onward && moving.is_some() {
+        if onward && moving.is_some() && !start.own_speed {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.bodies[Parameter::Speed][self.block].0[self.lane] = speed;
         }

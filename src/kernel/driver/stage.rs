@@ -122,6 +122,10 @@ fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Sta
             return vec![stage(Target::Onward, (number, 0), 0, (true, false))];
         }
         Route::Legs { legs, then_leave } => (legs.as_slice(), *then_leave),
+        Route::OneOf { legs, .. } => {
+            let one = |(k, leg)| stage(target(scenario, leg), (number, k), 0, (true, false));
+            return legs.iter().enumerate().map(one).collect();
+        }
     };
     // Whoever stays stands at the last goal anyway: a pause after it changes nothing.
     let pauses = legs.iter().rev().take_while(|leg| matches!(leg, Leg::Wait(_))).count();
@@ -212,7 +216,8 @@ impl Drive {
         let number = self.routes.len() as u32;
         self.stages.extend(stages(&self.scenario, route, from, number));
         for k in first as usize + 1..self.stages.len() {
-            let middle = self.stages[k - 1].target.middle();
+            let before = &self.stages[k - 1];
+            let middle = before.target.middle().filter(|_| !before.last);
             let ahead =
                 middle.and_then(|middle| Some((middle, way_to(&self.stages[k].target, middle, 0.0)?)));
             self.stages[k - 1].open =

@@ -5,8 +5,8 @@ use crate::base::decimal::Decimal;
 use crate::base::geometry::Vec2;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{
-    Agent, AgentId, Attached, BehaviourId, Behaviours, Bool, Family, Kind, Leg, Mode, Particle, Position,
-    Processes, Scene, Start, Variable,
+    Agent, AgentId, Attached, BehaviourId, Behaviours, Bool, Family, Kind, Leg, Mode, Particle, Processes,
+    Scene, Start, Variable,
 };
 use proptest::prelude::*;
 
@@ -21,12 +21,7 @@ fn scenario(speed: Law, noise: Law, changes: Vec<(Parameter, Amount)>) -> Scenar
         name: "me".to_owned(),
         entity: 1,
         body: Arc::new(body),
-        start: Start {
-            position: Position::Point(Vec2::new(0.0, 0.0)),
-            velocity: Vec2::new(0.3, 0.4),
-            driving: None,
-            seen: Vec::new(),
-        },
+        start: Start { velocity: Vec2::new(0.3, 0.4), ..Start::at_rest(Vec2::zeros()) },
         route: Route::Legs { legs: vec![Leg::Wait(Law::Constant(1.0))], then_leave: false },
         group: None,
         particle: None,

@@ -1,6 +1,6 @@
 //! Evaluated predictions as one JSON object; `docs/schema/evaluate.schema.json` describes it.
 
-use super::{Displacement, Evaluated, EvaluatedKind, EvaluatedProperty};
+use super::{Coverage, Displacement, Evaluated, EvaluatedKind, EvaluatedProperty};
 use serde_json::{Value, json};
 
 /// Version of the form of this object.
@@ -32,6 +32,7 @@ fn kind(kind: &EvaluatedKind) -> Value {
         "name": kind.name,
         "properties": kind.properties.iter().map(property).collect::<Vec<_>>(),
         "displacement": kind.displacement.as_ref().map(displacement),
+        "coverage": kind.coverage.iter().map(coverage).collect::<Vec<_>>(),
     })
 }
 
@@ -55,6 +56,10 @@ fn property(property: &EvaluatedProperty) -> Value {
         "bins": score.map_or(&[][..], |score| &score.bins),
         "histogram": score.map_or([0; 10], |score| score.histogram),
     })
+}
+
+fn coverage(found: &Coverage) -> Value {
+    json!({ "seconds": found.seconds, "share": found.share, "log_density": found.log_density })
 }
 
 fn displacement(found: &Displacement) -> Value {

@@ -56,6 +56,19 @@ pub struct EvaluatedKind {
     pub properties: Vec<EvaluatedProperty>,
     /// How far predicted paths are from walked ones, if it was asked for.
     pub displacement: Option<Displacement>,
+    /// How well recorded positions fit predicted ones, after some times.
+    pub coverage: Vec<Coverage>,
+}
+
+/// Recorded positions among those that trials predict.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coverage {
+    /// After how many seconds.
+    pub seconds: f64,
+    /// Share of recorded positions in the 90 % region of the predicted ones.
+    pub share: Option<Estimate>,
+    /// Mean logarithm of the density, 1/m^2, of the normal law of the predicted positions at the recorded ones.
+    pub log_density: Option<Estimate>,
 }
 
 /// Predictions of one property by one kind.

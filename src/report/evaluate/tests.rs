@@ -33,6 +33,10 @@ fn evaluated(names: [&str; 2], property: &str) -> Evaluated {
             EvaluatedProperty { name: "never resolved".to_owned(), unresolved: 27, quality: None },
         ],
         displacement,
+        coverage: match k {
+            0 => vec![Coverage { seconds: 4.8, share: estimate(0.875), log_density: estimate(0.25) }],
+            _ => Vec::new(),
+        },
     };
     Evaluated {
         model: "hall.scn".to_owned(),
@@ -108,6 +112,11 @@ fn text_compares_with_the_kind_constant() {
       kind                  mean ADE           mean FDE              best ADE  best FDE  collision rate
       helbing2000  0.50 [0.45, 0.55]  1.00 [0.90, 1.10]  0.250 [0.225, 0.275]     0.512               -
       ADE: mean over all times; FDE: at the end; collision rate: share of paths that touch somebody
+
+    recorded positions in the 90 % region of the predicted ones
+      kind         after s              share           log density
+      helbing2000      4.8  0.88 [0.78, 0.97]  0.250 [0.225, 0.275]
+      log density: mean logarithm of the density of the predicted positions, 1/m^2
 
     Brier score: mean squared difference of probability and outcome; 0 is best.
     Skill: 1 - Brier score / Brier score of the base rate; 1 is best, 0 is as good as the base rate.

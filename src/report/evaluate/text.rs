@@ -1,6 +1,6 @@
 //! Evaluated predictions for people.
 
-use super::{CONSTANT, Evaluated, EvaluatedKind, EvaluatedProperty};
+use super::{CONSTANT, Coverage, Evaluated, EvaluatedKind, EvaluatedProperty};
 use crate::report::number::{count, counted, estimated, plain};
 use crate::report::text::columns::table;
 use crate::stats::{Estimate, Quality};
@@ -34,6 +34,7 @@ pub fn to_text(report: &Evaluated) -> String {
         terms(&mut out, &kinds);
     }
     distances(&mut out, &report.kinds);
+    coverage(&mut out, &report.kinds);
     let _ = writeln!(
         out,
         "\nBrier score: mean squared difference of probability and outcome; 0 is best.\n\
@@ -145,4 +146,22 @@ fn distances(out: &mut String, kinds: &[EvaluatedKind]) {
         out,
         "  ADE: mean over all times; FDE: at the end; collision rate: share of paths that touch somebody"
     );
+}
+
+/// How many recorded positions are where they were predicted.
+fn coverage(out: &mut String, kinds: &[EvaluatedKind]) {
+    let row = |kind: &EvaluatedKind, found: &Coverage| {
+        let name = kind.name.clone();
+        [name, plain(found.seconds), maybe(found.share.as_ref()), maybe(found.log_density.as_ref())]
+    };
+    let known = |found: &&Coverage| found.share.is_some();
+    let rows: Vec<_> = (kinds.iter())
+        .flat_map(|kind| kind.coverage.iter().filter(known).map(move |found| row(kind, found)))
+        .collect();
+    if !rows.is_empty() {
+        let _ = writeln!(out, "\nrecorded positions in the 90 % region of the predicted ones");
+        write(out, ["kind", "after s", "share", "log density"], rows);
+        let _ =
+            writeln!(out, "  log density: mean logarithm of the density of the predicted positions, 1/m^2");
+    }
 }

@@ -140,9 +140,14 @@ fn rare(text: &mut String, rare: &Rare) {
 /// How a result falls short of its query.
 pub(super) fn shortfall(text: &mut String, result: &QueryResult, palette: Palette) {
     let Some(shortfall) = result.shortfall() else { return };
-    let lacking = if result.stopped_by == Stop::Cap { "too few trials" } else { "too little time" };
+    let lacking = match result.stopped_by {
+        Stop::Cap => "too few trials",
+        Stop::Missing => "too few outcomes",
+        _ => "too little time",
+    };
     let said = match (shortfall, result.asked.kind) {
         (Shortfall::NotBegun, _) if result.stopped_by == Stop::Cap => "the budget has no trial".to_owned(),
+        (Shortfall::NotBegun, _) if result.stopped_by == Stop::Missing => "no outcome is there".to_owned(),
         (Shortfall::NotBegun, _) => format!("{lacking} for a trial"),
         (Shortfall::Incomplete, Kind::Rank) => {
             format!("{lacking} for a choice with the requested certificate")
@@ -199,6 +204,7 @@ pub(super) fn cause(result: &QueryResult) -> &'static str {
         Stop::Cap => "stopped at the largest number of trials",
         Stop::Deadline => "stopped at the time limit",
         Stop::Interrupt => "interrupted",
+        Stop::Missing => "stopped where outcomes are missing",
     }
 }
 

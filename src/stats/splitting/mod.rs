@@ -19,9 +19,10 @@ pub use spread::{Spread, student};
 use super::invalid::Invalid;
 use super::spec::{Chosen, DELTA, Make};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use serde::{Deserialize, Serialize};
 
 /// How a rare event is split into less rare ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rule {
     /// Whether levels are found on the way (else by a pilot run, with as many paths at each).
     pub adaptive: bool,

@@ -1,0 +1,179 @@
+//! The intentions of people who were recorded, from their fields and where they were seen.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::laws::{distribution, value_span};
+use super::number::Number;
+use super::people::STANDS;
+use super::sighting::Sighting;
+use super::symbols::{Meaning, unknown};
+use super::typed::Typed;
+use super::wishes::{Goals, Intended, RECORDED, destinations, is_recorded, weights};
+use crate::model::{Body, Goal, Law, Leg, Parameter, Route, Start};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Field, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+
+/// How strongly the heading tells the destination, unless stated.
+const KAPPA: f64 = 5.0;
+/// Largest `kappa`: then directions one degree apart differ by a factor of 4.
+const MOST_KAPPA: f64 = 1e4;
+
+impl Elaborator<'_> {
+    /// What fields say of the intentions of people who were recorded.
+    pub(super) fn intended<'f>(&mut self, fields: &[&'f Field]) -> Lowered<Intended<'f>> {
+        let mut all = Intended::default();
+        for (k, field) in fields.iter().enumerate() {
+            let name = field.name.name.as_str();
+            if let Some(first) = fields[..k].iter().find(|before| before.name.name == name) {
+                let error = Diagnostic::error(Code::E0202, field.name.span, format!("`{name}` is set twice"));
+                return self.report(error.related(first.name.span, "first set here"));
+            }
+            match name {
+                "heading" => all.turn = Some(self.turn(&field.value)?),
+                "speed" => all.speed = Some(&field.value),
+                _ => all.goals = Some(self.destinations(field)?),
+            }
+        }
+        if let (Some(_), Some(goals)) = (&all.turn, &all.goals) {
+            let error = Diagnostic::error(
+                Code::E0405,
+                goals.span,
+                "a destination and a law of `heading` exclude each other",
+            );
+            return self.report(error.hint("remove one of them: who goes to a destination heads for it"));
+        }
+        Ok(all)
+    }
+
+    /// The law of the angle between the heading and the recorded one.
+    fn turn(&mut self, value: &Value) -> Lowered<Law> {
+        let hint = "write for example `heading = recorded + normal(0 deg, 12 deg)`";
+        let law = match value {
+            Value::Plain(expr) if is_recorded(expr) => return Ok(Law::Constant(0.0)),
+            Value::Plain(Expr { kind: ExprKind::Binary(BinaryOp::Plus, left, right), .. }) => {
+                match (is_recorded(left), is_recorded(right)) {
+                    (true, false) => Some(right),
+                    (false, true) => Some(left),
+                    _ => None,
+                }
+            }
+            _ => None,
+        };
+        match law {
+            Some(law) => self.law(&Value::Plain((**law).clone()), Dimension::ANGLE, &Locals::default()),
+            None => {
+                let said =
+                    "`heading` must be `recorded`, or `recorded` plus an angle or a distribution of angles";
+                self.report(Diagnostic::error(Code::E0305, value_span(value), said).hint(hint))
+            }
+        }
+    }
+
+    fn destinations(&mut self, field: &Field) -> Lowered<Goals> {
+        let Some((function, arguments)) = destinations(field) else {
+            return Err(Reported);
+        };
+        let span = value_span(&field.value);
+        let usage = "the tracks, and perhaps kappa: `destinations(hotel)`, `destinations(hotel, 5)`";
+        let (tracks, kappa) = match arguments {
+            [tracks] => (tracks, None),
+            [tracks, kappa] => (tracks, Some(kappa)),
+            _ => {
+                return self.report(Diagnostic::error(
+                    Code::E0204,
+                    function.span,
+                    format!("`destinations` needs {usage}"),
+                ));
+            }
+        };
+        let index = match &tracks.kind {
+            ExprKind::Name(name) => match self.find(name, 0) {
+                Some((_, Meaning::Tracks(index))) => index,
+                Some((_, Meaning::Doubtful)) => return Err(Reported),
+                _ => {
+                    return self.report(unknown("recording", name, tracks.span, Code::E0201, [].into_iter()));
+                }
+            },
+            _ => {
+                let error = Diagnostic::error(Code::E0206, tracks.span, "expected the name of tracks");
+                return self.report(error);
+            }
+        };
+        let kappa = match kappa {
+            None => KAPPA,
+            Some(expr) => {
+                let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
+                if !(0.0..=MOST_KAPPA).contains(&number.value) {
+                    let said = format!("`kappa` must be from 0 to {MOST_KAPPA} (got {})", number.value);
+                    return self.report(Diagnostic::error(Code::E0405, expr.span, said));
+                }
+                number.value
+            }
+        };
+        match self.destinations.get(index) {
+            Some(Ok(places)) if !places.is_empty() => Ok(Goals { places: places.clone(), kappa, span }),
+            Some(Ok(_)) => {
+                let error = Diagnostic::error(Code::E0702, span, "the file has no destinations");
+                self.report(error.hint("write x and y of one destination a line, in m"))
+            }
+            Some(Err(reason)) => {
+                let error = Diagnostic::error(Code::E0701, span, reason.clone());
+                self.report(
+                    error.hint("put a file `destinations.txt` with x and y a line beside the recording"),
+                )
+            }
+            None => Err(Reported),
+        }
+    }
+
+    /// Gives somebody who was seen the intention that the fields say. Who stands has none.
+    pub(super) fn intend(
+        &mut self,
+        intended: &Intended<'_>,
+        seen: &Sighting,
+        (body, start, route): (&mut Body, &mut Start, &mut Route),
+    ) -> Lowered<()> {
+        let speed = seen.driving.norm();
+        if speed < STANDS {
+            return Ok(());
+        }
+        if let Some(turn) = &intended.turn {
+            start.turn = turn.clone();
+        }
+        if let Some(value) = intended.speed {
+            body[Parameter::Speed] = self.recorded_speed(value, speed)?;
+            start.own_speed = true;
+        }
+        if let Some(goals) = &intended.goals {
+            let Some(weights) = weights(&goals.places, seen.position, seen.driving, goals.kappa) else {
+                let said = format!("all destinations of person {} have weight 0", seen.id);
+                let error = Diagnostic::error(Code::E0405, goals.span, said);
+                return self.report(error.hint("this person is at all of them: add others to the file"));
+            };
+            let legs = goals.places.iter().map(|place| Leg::To(Goal::Point(*place))).collect();
+            *route = Route::OneOf { legs, weights };
+        }
+        Ok(())
+    }
+
+    /// The law of a speed, m/s, around that which was recorded.
+    fn recorded_speed(&mut self, value: &Value, speed: f64) -> Lowered<Law> {
+        let expr = match value {
+            Value::Plain(expr) | Value::Truncated { law: expr, .. } => expr,
+            _ => return self.parameter_law(Parameter::Speed, value, &Locals::default()),
+        };
+        let is_law = is_recorded(expr)
+            || matches!(&expr.kind, ExprKind::Binary(BinaryOp::Times, left, right)
+                if is_recorded(left) != is_recorded(right));
+        if !is_law && distribution(expr).is_none() {
+            let said =
+                "`speed` must be `recorded`, or `recorded` times a number or a distribution of numbers";
+            let hint = "write for example `speed = recorded * normal(1, 0.15) in 0 m/s .. 3 m/s`";
+            return self.report(Diagnostic::error(Code::E0305, value_span(value), said).hint(hint));
+        }
+        let mut locals = Locals::default();
+        locals.bind(RECORDED, Typed::Number(Number::rounded(speed, Dimension::SPEED)));
+        self.parameter_law(Parameter::Speed, value, &locals)
+    }
+}
