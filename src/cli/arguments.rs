@@ -6,10 +6,10 @@ use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
+use super::simulate::{Keep, parse_trace_format};
 use super::values::{
     Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
 };
-use super::simulate::{Keep, parse_trace_format};
 use super::walk::WalkCommand;
 use crate::data::table::{FORMATS, TraceFormat};
 use crate::data::tracks::Velocity;

@@ -44,7 +44,9 @@ impl<'a> Elaborator<'a> {
         let index = self.recordings.len();
         let fields = self.track_fields(body);
         let tracks = match (files.seen(&name.name), file) {
-            (Some(seen), _) => fields.map(|TrackFields { memory, .. }| Tracks::Live { seen: seen.clone(), memory }),
+            (Some(seen), _) => {
+                fields.map(|TrackFields { memory, .. }| Tracks::Live { seen: seen.clone(), memory })
+            }
             (None, Some((format, path))) => fields.and_then(|TrackFields { velocity, memory, trial }| {
                 let recording = self.recording(format, path, trial, files)?;
                 let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);

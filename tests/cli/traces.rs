@@ -406,3 +406,98 @@ process blinker { var b = true  when b & late.on at 1e9 /s -> b = false  when !b
     let said = Place::new(&[("a.scn", model)]).call(&["simulate", "a.scn"]).err;
     assert!(said.contains("at 0.4 s: more than 1048576 jumps") && said.contains("of `blinker`"), "{said}");
 }
+
+/// What a program says of traces whose names are hostile, and whose numbers have all their digits.
+const CROWD: &str = "horizon = 1 s\nstep = 0.1 s\n
+    kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
+    agents crowd[3]: adult { at = uniform in rect (0, 0) .. (5, 5)  route = (20, 0) }";
+
+#[test]
+fn traces_are_read_again_to_the_last_digit() {
+    let place = Place::new(&[("a.scn", CROWD)]);
+    let first: Vec<Value> = rows(&place, "a.scn", &["--trial", "2", "--until", "0"]);
+    for (file, reader, trials) in
+        [("t.csv", "csv", "{ trial = 2 }"), ("t.jsonl", "jsonl", "{ trial = 2 }"), ("t.txt", "pedpy", "")]
+    {
+        let number = if trials.is_empty() { "1" } else { "2" };
+        let words = ["simulate", "a.scn", "--trial", "2", "--trials", number, "-o", file];
+        assert_eq!(place.call(&words).code, Some(0), "{file}");
+        let again = format!(
+            "horizon = 1 s\nstep = 0.1 s\ntracks seen = {reader} \"{file}\" {trials}\n
+             kind adult: sfm preset helbing2000\nagents crowd: adult from seen at 0 s"
+        );
+        std::fs::write(place.path("again.scn"), again).unwrap();
+        let second = rows(&place, "again.scn", &["--until", "0"]);
+        assert_eq!(second.len(), 3, "{file}");
+        for (one, other) in first.iter().zip(&second) {
+            for column in ["x", "y"] {
+                assert_eq!(one[column].to_string(), other[column].to_string(), "{file} {column}");
+            }
+        }
+    }
+    let infer = place.call(&["infer", "t.csv", "--trial", "3", "--format", "csv"]);
+    assert_eq!(infer.code, Some(0), "{}", infer.err);
+    for (words, part) in [
+        (&["infer", "t.csv"][..], "trial"),
+        (&["infer", "t.csv", "--trial", "9"], "trial"),
+        (&["infer", "t.txt", "--trial", "0"], "`pedpy` has no trials to choose from"),
+    ] {
+        let said = place.call(words);
+        assert_eq!(said.code, Some(2), "{words:?} {}", said.err);
+        assert!(said.err.contains(part), "{words:?} {}", said.err);
+    }
+}
+
+#[test]
+fn trials_of_a_verdict_are_kept() {
+    let properties = "property slow = G<=1 s (forall a in crowd: speed(a) < 1.2 m/s)\n
+        check P(slow) >= 0.5\ncheck P(F<=1 s (contact(crowd[1]))) <= 0.5\nestimate P(slow)";
+    let place = Place::new(&[("a.scn", CROWD), ("p.bltl", properties), ("none.bltl", "estimate P(true)")]);
+    let call = ["simulate", "a.scn", "p.bltl", "-n", "40", "--until", "0", "--format", "jsonl", "--keep"];
+    let kept = |which: &str| {
+        let said = place.call(&[&call[..], &[which]].concat());
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let trials: std::collections::BTreeSet<u64> = said
+            .out
+            .lines()
+            .map(|line| serde_json::from_str::<Value>(line).unwrap()["trial"].as_u64().unwrap())
+            .collect();
+        assert!(said.err.contains(&format!("kept {} of 40 trials", trials.len())), "{}", said.err);
+        trials
+    };
+    let (violated, satisfied) = (kept("violated=slow"), kept("satisfied=slow"));
+    assert!(violated.is_disjoint(&satisfied) && violated.len() + satisfied.len() == 40);
+    assert_eq!(kept("satisfied=0"), satisfied);
+    for (file, which, part) in [
+        ("p.bltl", "violated", "there are 2 checks of a probability"),
+        ("p.bltl", "violated=slwo", "did you mean `slow`?"),
+        ("none.bltl", "violated", "needs a check of a probability"),
+    ] {
+        let said = place.call(&["simulate", "a.scn", file, "--keep", which]);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{which}");
+        assert!(said.err.contains(part), "{}", said.err);
+    }
+}
+
+#[test]
+fn what_a_format_of_traces_cannot_hold_is_refused() {
+    let place =
+        Place::new(&[("a.scn", CROWD), ("die.scn", "horizon = 3 steps\nprocess d { var s: 0 .. 1 = 0 }")]);
+    for (words, part) in [
+        (&["simulate", "a.scn", "-o", "t.xls"][..], "no format of traces has files that end with `.xls`"),
+        (&["simulate", "a.scn", "-n", "2", "-o", "t.txt"], "`pedpy` holds one trial in a file (got 2)"),
+        (&["simulate", "die.scn", "-o", "t.txt"], "the scenario has no agents"),
+        (&["simulate", "a.scn", "-o", "missing/t.csv"], "missing/t.csv"),
+        (&["simulate", "a.scn", "-o", "a.scn", "--format", "csv"], "a.scn"),
+        (&["simulate", "a.scn", "-o", "t.html", "--format", "csv", "--report", "t.html"], "two results"),
+    ] {
+        let said = place.call(words);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}");
+        assert!(said.err.contains(part), "{words:?} {}", said.err);
+    }
+    let said = place.call(&["simulate", "a.scn", "-n", "2", "-o", "t-{trial}.txt"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(
+        place.path("t-0.txt").exists() && place.path("t-1.txt").exists() && !place.path("t.txt").exists()
+    );
+}

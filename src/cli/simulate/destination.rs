@@ -124,7 +124,9 @@ impl Destination {
         if is_of_one_trial && chosen.count() != 1 {
             let title = format!("`{name}` holds one trial in a file (got {})", chosen.count());
             let ending = self.format.ending;
-            let hint = format!("write `-o 'trace-{TRIAL}.{ending}'` for a file of each trial, or choose one with `--trial`");
+            let hint = format!(
+                "write `-o 'trace-{TRIAL}.{ending}'` for a file of each trial, or choose one with `--trial`"
+            );
             return Err(complaint::argument(title, hint));
         }
         Ok(Box::new(std::iter::once(Ok((self.file.clone(), chosen)))))

@@ -86,8 +86,12 @@ impl Keep {
                 (Some(name), None) => format!("`--keep {word}={name}`: no check is about `{name}`"),
             };
             let near = self.name.as_ref().filter(|_| meant.is_empty());
-            let near = near.and_then(|name| Some(nearest(name, names().iter().map(String::as_str))?.to_owned()));
-            return Err(complaint::argument(title, near.map_or_else(known, |near| format!("did you mean `{near}`?"))));
+            let near =
+                near.and_then(|name| Some(nearest(name, names().iter().map(String::as_str))?.to_owned()));
+            return Err(complaint::argument(
+                title,
+                near.map_or_else(known, |near| format!("did you mean `{near}`?")),
+            ));
         };
         if checks.iter().any(|query| query.index == first.index && of(query) != of(first)) {
             let title = format!("`--keep {word}`: the check has a result for each point of a sweep");

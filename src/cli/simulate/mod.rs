@@ -47,10 +47,12 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     let Some(study) = inputs.study.take() else { return Exit::Wrong };
     let destination =
         Destination::new(arguments.format, arguments.output.as_deref(), arguments.report.as_deref(), &paths);
-    destination.and_then(|to| simulate(arguments, study, &to, &inputs.sources, colors)).unwrap_or_else(|error| {
-        complaint::tell(&error, &inputs.sources, colors);
-        Exit::Wrong
-    })
+    destination.and_then(|to| simulate(arguments, study, &to, &inputs.sources, colors)).unwrap_or_else(
+        |error| {
+            complaint::tell(&error, &inputs.sources, colors);
+            Exit::Wrong
+        },
+    )
 }
 
 /// Whether the numbers of a call are possible.
@@ -78,7 +80,10 @@ fn last(scenario: &Scenario, until: Option<f64>) -> Result<Tick, Diagnostic> {
     if until > end * (1.0 + 1e-12) {
         let unit = if scenario.clock == Clock::Steps { "steps" } else { "s" };
         let hint = format!("the horizon of the scenario is {end} {unit}");
-        return Err(complaint::argument(format!("`--until` must not exceed the horizon (got {until})"), hint));
+        return Err(complaint::argument(
+            format!("`--until` must not exceed the horizon (got {until})"),
+            hint,
+        ));
     }
     // The longest time that is a whole number of ticks, in continuous time of very short ones.
     Ok(scenario.horizon.min(Tick(match scenario.clock {

@@ -39,7 +39,8 @@ pub(super) fn table(scenario: &Scenario, seed: u64, every: u64) -> Table {
     }
     let barriers = || scenario.scene.barriers.iter().map(|barrier| &barrier.obstacle);
     let walls = barriers().filter_map(|one| if let Obstacle::Wall(parts) = one { Some(parts) } else { None });
-    let solids = barriers().filter_map(|one| if let Obstacle::Solid(shape) = one { Some(shape) } else { None });
+    let solids =
+        barriers().filter_map(|one| if let Obstacle::Solid(shape) = one { Some(shape) } else { None });
     Table {
         columns,
         scenario: scenario.title.clone(),

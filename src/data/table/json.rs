@@ -113,10 +113,7 @@ mod tests {
         let object: Json = serde_json::from_str(&text(&OBJECT, &table(), rows())).unwrap();
         assert_eq!((&object["columns"][3], &object["units"][3]), (&json!("x"), &json!("m")));
         assert_eq!((&object["scenario"], &object["seed"]), (&json!(HOSTILE), &json!(7)));
-        assert_eq!(
-            object["rows"][0],
-            json!([0, 3, HOSTILE, 1.5, -0.25, 0.3, 0.4, true, null, -2, "idle"])
-        );
+        assert_eq!(object["rows"][0], json!([0, 3, HOSTILE, 1.5, -0.25, 0.3, 0.4, true, null, -2, "idle"]));
         let empty: Json = serde_json::from_str(&text(&OBJECT, &table(), Vec::new())).unwrap();
         assert_eq!(empty["rows"], json!([]));
     }

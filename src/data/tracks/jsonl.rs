@@ -87,7 +87,13 @@ mod tests {
         assert_eq!(recording.ids().collect::<Vec<_>>(), [1, 2]);
         assert_eq!(recording.at(0.0)[0].position, Vec2::new(1.0, 2.0));
         assert_eq!(recording.at(0.0)[0].velocity, Vec2::new(0.5, 0.0));
-        assert_eq!(read_json_lines(&TEXT.replace("\"b\"", "70").replace("\"a\"", "\"7\""), Some(3)).unwrap().ids().collect::<Vec<_>>(), [7, 70]);
+        assert_eq!(
+            read_json_lines(&TEXT.replace("\"b\"", "70").replace("\"a\"", "\"7\""), Some(3))
+                .unwrap()
+                .ids()
+                .collect::<Vec<_>>(),
+            [7, 70]
+        );
     }
 
     #[test]

@@ -47,7 +47,8 @@ mod with_feature {
         }
         let mut traces = Traces::default();
         for (k, row) in reader.get_row_iter(None).map_err(damaged)?.enumerate() {
-            let seen = row.map_err(|error| error.to_string()).and_then(|row| read_row(k + 1, &row, &mut traces));
+            let seen =
+                row.map_err(|error| error.to_string()).and_then(|row| read_row(k + 1, &row, &mut traces));
             if let Err(message) = seen {
                 errors.push(LineError::whole(k + 1, message));
             }
@@ -56,7 +57,8 @@ mod with_feature {
     }
 
     fn read_row(line: usize, row: &Row, traces: &mut Traces) -> Result<(), String> {
-        let field = |wanted: &str| row.get_column_iter().find(|(name, _)| *name == wanted).map(|(_, field)| field);
+        let field =
+            |wanted: &str| row.get_column_iter().find(|(name, _)| *name == wanted).map(|(_, field)| field);
         if field("present") == Some(&Field::Bool(false)) {
             return Ok(());
         }
