@@ -6,6 +6,7 @@
 //! of a query (120 unless given). An argument, as in `-- 20`, is the largest budget of all.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints")]
+#![allow(clippy::disallowed_methods, reason = "an example opens its own files")]
 
 use smc::compile::presets::PRESETS;
 

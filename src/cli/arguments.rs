@@ -6,7 +6,8 @@ use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
-use super::simulate::{Keep, parse_trace_format};
+use super::simulate::destination::parse_trace_format;
+use super::simulate::keep::Keep;
 use super::values::{
     Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
 };
@@ -235,7 +236,7 @@ pub(super) struct Simulate {
     #[arg(long, value_name = "WHICH[=NAME]", requires = "properties")]
     pub(super) keep: Option<Keep>,
     /// Format of the table: `csv`, `json`, `jsonl`, `pedpy`, `parquet` or `sqlite`. By default the ending of the file shows it
-    /// (PedPy: `.txt`), and standard output is `csv`.
+    /// (`pedpy`: `.txt`), and standard output is `csv`.
     #[arg(long, value_name = "FORMAT", value_parser = trace_formats())]
     pub(super) format: Option<&'static TraceFormat>,
     /// File to write; standard output by default. `{trial}` in the name stands for the number of the trial, so that each has

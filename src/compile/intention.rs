@@ -159,9 +159,8 @@ impl Elaborator<'_> {
 
     /// The law of a speed, m/s, around that which was recorded.
     fn recorded_speed(&mut self, value: &Value, speed: f64) -> Lowered<Law> {
-        let expr = match value {
-            Value::Plain(expr) | Value::Truncated { law: expr, .. } => expr,
-            _ => return self.parameter_law(Parameter::Speed, value, &Locals::default()),
+        let (Value::Plain(expr) | Value::Truncated { law: expr, .. }) = value else {
+            return self.parameter_law(Parameter::Speed, value, &Locals::default());
         };
         let is_law = is_recorded(expr)
             || matches!(&expr.kind, ExprKind::Binary(BinaryOp::Times, left, right)

@@ -1,12 +1,9 @@
 //! `smc simulate`: traces of trials as tables.
 
-mod destination;
-mod keep;
+pub(super) mod destination;
+pub(super) mod keep;
 mod option;
 mod rows;
-
-pub(super) use destination::parse_trace_format;
-pub(super) use keep::Keep;
 
 use super::arguments::Simulate;
 use super::complaint;

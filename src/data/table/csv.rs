@@ -2,7 +2,8 @@
 //!
 //! Truth values are 1 and 0. Infinite numbers are `inf` and `-inf`; what is missing is empty.
 
-use super::{Table, TraceFormat, Value, Writer};
+use super::column::Value;
+use super::format::{Table, TraceFormat, Writer};
 use std::borrow::Cow;
 use std::io::{self, Write};
 

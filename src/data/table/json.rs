@@ -2,7 +2,8 @@
 //!
 //! What is missing or infinite is `null`, as JSON has no other word for it.
 
-use super::{Table, TraceFormat, Value, Writer};
+use super::column::{Column, Value};
+use super::format::{Table, TraceFormat, Writer};
 use std::io::{self, Write};
 
 /// One object with columns, their units, and rows:
@@ -34,7 +35,7 @@ impl<W: Write> Object<W> {
         let (scenario, version) =
             (serde_json::to_string(&table.scenario)?, serde_json::to_string(&table.version)?);
         let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
-        let units: Vec<&str> = table.columns.iter().map(super::Column::unit).collect();
+        let units: Vec<&str> = table.columns.iter().map(Column::unit).collect();
         let (names, units) = (serde_json::to_string(&names)?, serde_json::to_string(&units)?);
         write!(out, "{{\"schema\":1,\"scenario\":{scenario},\"seed\":{},\"version\":{version},", table.seed)?;
         write!(out, "\"columns\":{names},\"units\":{units},\"rows\":[")?;

@@ -1,7 +1,8 @@
 //! Traces as Apache Parquet: numbers are `DOUBLE`, whole numbers `INT64`, words `UTF8` and truth values `BOOLEAN`; each may be
 //! missing. The metadata of the file have `scenario`, `seed`, `version` and, as a JSON object by column, `units`.
 
-use super::{Kind, Table, TraceFormat, Value, Writer};
+use super::column::{Column, Kind, Value};
+use super::format::{Table, TraceFormat, Writer};
 use ::parquet::basic::{LogicalType, Repetition, Type as Physical};
 use ::parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use ::parquet::errors::ParquetError;
@@ -106,7 +107,7 @@ struct Parquet<W> {
 
 impl<W: Write> Parquet<W> {
     fn new(out: W, table: &Table) -> io::Result<Self> {
-        let column = |column: &super::Column| {
+        let column = |column: &Column| {
             let (physical, logical) = match column.kind {
                 Kind::Number(_) => (Physical::DOUBLE, None),
                 Kind::Whole => (Physical::INT64, None),

@@ -4,8 +4,9 @@
 //! `PedPy` finds the rate and the unit in all comments at the beginning (`load_trajectory_from_txt`), so no text of a user is
 //! written there: a title `walk in cm` would change the unit.
 
+use super::column::Value;
+use super::format::{Table, TraceFormat, Writer};
 use super::trajectory::Trajectory;
-use super::{Table, TraceFormat, Value, Writer};
 use std::io::{self, Write};
 
 /// The text format.

@@ -5,9 +5,10 @@
 //!
 //! The database is made in memory, so that it comes to its file as a whole.
 
+use super::column::Value;
+use super::format::{Table, TraceFormat, Writer};
 use super::trajectory::Trajectory;
 use super::walkable::Walkable;
-use super::{Table, TraceFormat, Value, Writer};
 use crate::base::geometry::Vec2;
 use rusqlite::{Connection, MAIN_DB, params};
 use std::collections::BTreeSet;

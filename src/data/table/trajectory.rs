@@ -3,7 +3,8 @@
 //! A frame is a row of time, from 0. Agents have ids from 1 in the order in which they come first, as
 //! [`crate::data::tracks`] numbers them when it reads names.
 
-use super::{Table, Value};
+use super::column::Value;
+use super::format::Table;
 use crate::base::geometry::Vec2;
 use std::collections::BTreeMap;
 use std::io;

@@ -74,9 +74,8 @@ pub(super) fn cells(record: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)>
         column += cell.chars().count() + 1;
         let cell = cell.trim();
         let inner = cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"'));
-        let inner = inner.map(|inner| match inner.contains('"') {
-            true => Cow::Owned(inner.replace("\"\"", "\"")),
-            false => Cow::Borrowed(inner),
+        let inner = inner.map(|inner| {
+            if inner.contains('"') { Cow::Owned(inner.replace("\"\"", "\"")) } else { Cow::Borrowed(inner) }
         });
         Some((start, inner.unwrap_or(Cow::Borrowed(cell))))
     })
@@ -89,15 +88,14 @@ mod tests {
     #[test]
     fn quoted_cells_hold_anything() {
         let text = "a, \"b, \"\"c\"\"\n\" ,5\" wide,\"\"\r\n\n é , x\n";
-        let found: Vec<(usize, Vec<(usize, String)>, bool)> = records(text)
-            .map(|(line, record, ends)| (line, cells(record).map(|(k, c)| (k, c.into())).collect(), ends))
-            .collect();
+        let all = |record| cells(record).map(|(k, c)| (k, c.into_owned())).collect::<Vec<_>>();
+        let found: Vec<_> = records(text).map(|(line, record, ends)| (line, all(record), ends)).collect();
         let cell = |k: usize, text: &str| (k, text.to_owned());
         assert_eq!(
             found,
             [
                 (1, vec![cell(1, "a"), cell(4, "b, \"c\"\n"), cell(17, "5\" wide"), cell(25, "")], true),
-                (4, vec![cell(2, "é"), cell(5, "x")], true),
+                (4, vec![cell(2, "é"), cell(6, "x")], true),
             ]
         );
         assert_eq!(records("a,\"b\nc").map(|(line, _, ends)| (line, ends)).collect::<Vec<_>>(), [(1, false)]);

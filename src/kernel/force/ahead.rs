@@ -62,6 +62,7 @@ fn foreseen<S: Simd>(
     Pair { gap: smaller::<S>(later.gap, limit), ..later }
 }
 
+#[expect(clippy::redundant_closure, reason = "only a closure can be marked for inlining")]
 impl<A: PairTerm, const SAME: bool> PairTerm for Ahead<A, SAME> {
     const COUNT: usize = A::COUNT + 7;
     const KEEPS_HEADWAY: bool = true;
