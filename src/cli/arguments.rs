@@ -6,8 +6,8 @@ use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
-use super::simulate::destination::parse_trace_format;
-use super::simulate::keep::Keep;
+use super::simulate::choice::Keep;
+use super::simulate::format::parse_trace_format;
 use super::values::{
     Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
 };

@@ -1,5 +1,6 @@
 //! Where the tables of a call go, and in which format.
 
+use super::format::left_out;
 use crate::cli::{complaint, output};
 use crate::data::table::{CSV, FORMATS, TraceFormat};
 use crate::model::Scenario;
@@ -9,26 +10,6 @@ use std::path::{Path, PathBuf};
 
 /// What stands in the name of a file for the number of the trial.
 const TRIAL: &str = "{trial}";
-
-/// The format of a name.
-///
-/// # Errors
-/// A name that no format has, or one without which the program was built.
-pub(in crate::cli) fn parse_trace_format(name: &str) -> Result<&'static TraceFormat, String> {
-    let Some(format) = FORMATS.iter().find(|format| format.name == name) else {
-        let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
-        return Err(format!("the formats are {}", names.join(", ")));
-    };
-    if format.open.is_none() {
-        return Err(left_out(format));
-    }
-    Ok(format)
-}
-
-fn left_out(format: &TraceFormat) -> String {
-    let name = format.name;
-    format!("this program was built without the feature `{name}`: build it with `--features {name}`")
-}
 
 /// Numbers of trials, ascending.
 #[derive(Clone, Debug)]

@@ -1,5 +1,6 @@
 //! `--keep`: only the trials in which the formula of a check is false, or true.
 
+use super::choice::Keep;
 use crate::cli::complaint;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
@@ -9,36 +10,9 @@ use crate::engine::executor::{Executor, Job};
 use crate::engine::{Budget, Fault, PreparedWorld, Threads};
 use crate::library;
 use crate::syntax::diagnostic::Diagnostic;
-use std::str::FromStr;
 
 /// Trials that are judged at one time.
 const ROUND: u64 = 4096;
-
-/// `violated`, `violated=NAME`, `satisfied`, `satisfied=NAME`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::cli) struct Keep {
-    /// Whether the formula is true in the trials that are kept.
-    truth: bool,
-    /// The check, by the name of its property or its number.
-    name: Option<String>,
-}
-
-impl FromStr for Keep {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (word, name) = text.split_once('=').map_or((text, None), |(word, name)| (word, Some(name)));
-        let truth = match word {
-            "violated" => false,
-            "satisfied" => true,
-            _ => return Err("write `violated`, `satisfied`, or with a check `violated=NAME`".to_owned()),
-        };
-        if name.is_some_and(str::is_empty) {
-            return Err(format!("the name of the check is missing: write `{word}=NAME`"));
-        }
-        Ok(Self { truth, name: name.map(str::to_owned) })
-    }
-}
 
 /// How a message calls a query.
 fn label(query: &Query) -> String {
@@ -46,10 +20,6 @@ fn label(query: &Query) -> String {
 }
 
 impl Keep {
-    fn word(&self) -> &'static str {
-        if self.truth { "satisfied" } else { "violated" }
-    }
-
     /// What the check observes in each trial.
     ///
     /// # Errors
@@ -144,19 +114,5 @@ impl Keep {
     pub(super) fn told(&self, trials: u64, kept: usize, unresolved: u64) -> String {
         let word = self.word();
         format!("kept {kept} of {trials} trials: {word} in {kept}, unresolved in {unresolved}\n")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_word_and_perhaps_a_name_are_read() {
-        let of = |text: &str| text.parse::<Keep>();
-        assert_eq!(of("violated"), Ok(Keep { truth: false, name: None }));
-        assert_eq!(of("satisfied=a=b"), Ok(Keep { truth: true, name: Some("a=b".to_owned()) }));
-        assert!(of("violated=").unwrap_err().contains("`violated=NAME`"));
-        assert!(of("broken").unwrap_err().contains("`satisfied`"));
     }
 }

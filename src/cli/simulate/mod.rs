@@ -1,7 +1,9 @@
 //! `smc simulate`: traces of trials as tables.
 
-pub(super) mod destination;
-pub(super) mod keep;
+pub(super) mod choice;
+mod destination;
+pub(super) mod format;
+mod keep;
 mod option;
 mod rows;
 
