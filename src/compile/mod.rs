@@ -72,4 +72,5 @@ pub use settings::Setting;
 pub use sighting::{Grouping, Seen, Sighting};
 pub use starts::Starts;
 pub use study::Study;
+pub use tracks::trial_of;
 pub use written::Written;

@@ -11,7 +11,7 @@ use super::symbols::{Meaning, unknown};
 use super::wishes::{beside, places};
 use crate::base::random::MOST_TRIALS;
 use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
-use crate::syntax::ast::{Field, Ident, Text, Value};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Quantity, Text, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -100,9 +100,12 @@ impl<'a> Elaborator<'a> {
                     Ok(seconds) => read.memory = seconds,
                     Err(Reported) => failed = true,
                 },
-                "trial" => match self.trial(&field.value, at) {
+                "trial" => match trial(&field.value) {
                     Ok(number) => read.trial = Some(number),
-                    Err(Reported) => failed = true,
+                    Err(error) => {
+                        self.note(error);
+                        failed = true;
+                    }
                 },
                 _ => {
                     self.note(unknown("field", name, field.name.span, Code::E0207, FIELDS.into_iter()));
@@ -122,17 +125,6 @@ impl<'a> Elaborator<'a> {
             return self.report(Diagnostic::error(Code::E0405, at, "`memory` cannot be negative"));
         }
         Ok(number.value)
-    }
-
-    fn trial(&mut self, value: &'a Value, at: Span) -> Lowered<u64> {
-        let number = match value {
-            Value::Plain(expr) => self.number_of(expr, Dimension::NONE, &Locals::default())?.value,
-            _ => f64::NAN,
-        };
-        if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 {
-            return Ok(number as u64);
-        }
-        self.report(Diagnostic::error(Code::E0305, at, "`trial` must be a whole number from 0"))
     }
 
     fn recording(
@@ -155,6 +147,25 @@ impl<'a> Elaborator<'a> {
         let reading = Reading { trial, ..Reading::default() };
         reader.read(bytes, &reading).or_else(|errors| self.report(unreadable(path.span, &errors)))
     }
+}
+
+/// The trial that tracks with these fields are of, if they say.
+///
+/// # Errors
+/// Where it is not written as a whole number.
+pub fn trial_of(body: &[Field]) -> Result<Option<u64>, Diagnostic> {
+    body.iter().find(|field| field.name.name == "trial").map(|field| trial(&field.value)).transpose()
+}
+
+fn trial(value: &Value) -> Result<u64, Diagnostic> {
+    if let Value::Plain(Expr { kind: ExprKind::Quantity(Quantity { value, unit: None }), .. }) = value {
+        let number = value.to_f64();
+        if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 {
+            return Ok(number as u64);
+        }
+    }
+    let at = value_span(value);
+    Err(Diagnostic::error(Code::E0305, at, "`trial` must be a whole number from 0").hint("write `trial = 3`"))
 }
 
 /// A file whose lines cannot be read.

@@ -8,7 +8,7 @@ use crate::advise::groups;
 use crate::base::geometry::Vec2;
 use crate::compile::study::Study;
 use crate::compile::{Files, Input, Seen, Setting, Sighting, examine};
-use crate::data::tracks::{PersonState, Reading, Recording, Velocity};
+use crate::data::tracks::{PersonState, Recording, Velocity};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -57,10 +57,10 @@ impl Replay {
         velocity: Velocity,
         whose: Whose,
     ) -> Result<Self, Vec<Diagnostic>> {
-        let (format, text, place) = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
-        let recorded = format.read(text, &Reading::default()).map_err(|errors| {
+        let file = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
+        let recorded = file.format.read(file.bytes, &file.reading).map_err(|errors| {
             let first = errors.first().map_or(String::new(), ToString::to_string);
-            vec![Diagnostic::error(Code::E0702, place, "the recording cannot be read").label(first)]
+            vec![Diagnostic::error(Code::E0702, file.place, "the recording cannot be read").label(first)]
         })?;
         let cast = Cast::of(input.scenario, tracks)?;
         let who = match whose {

@@ -1,28 +1,37 @@
 //! The file of the tracks that are replayed.
 
-use crate::compile::Files;
-use crate::data::tracks::Format;
+use crate::compile::{Files, trial_of};
+use crate::data::tracks::{Format, Reading};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-/// Format and text of the tracks of a name, and where their path is written.
+/// The file of tracks.
+#[derive(Clone, Copy, Debug)]
+pub struct TracksFile<'f> {
+    /// Its format.
+    pub format: &'static Format,
+    /// What is in it.
+    pub bytes: &'f [u8],
+    /// What the scenario says of it.
+    pub reading: Reading,
+    /// Where its path is written.
+    pub place: Span,
+}
+
+/// The file of the tracks of a name.
 ///
 /// # Errors
 /// Where the scenario has no such tracks, they are a stream, or their file cannot be read.
-pub fn source<'f>(
-    file: &ScenarioFile,
-    files: &'f Files,
-    name: &str,
-) -> Result<(&'static Format, &'f str, Span), Diagnostic> {
+pub fn source<'f>(file: &ScenarioFile, files: &'f Files, name: &str) -> Result<TracksFile<'f>, Diagnostic> {
     let wrong = |said: String, hint: String| Err(Diagnostic::placeless(Code::E0705, said).hint(hint));
     let tracks = file.items.iter().find_map(|item| match item {
-        Item::Tracks { name: own, file, .. } if own.name == name => Some(file),
+        Item::Tracks { name: own, file, body } if own.name == name => Some((file, body)),
         _ => None,
     });
-    let Some(Some((format, path))) = tracks else {
-        if tracks == Some(&None) {
+    let Some((Some((format, path)), body)) = tracks else {
+        if tracks.is_some() {
             let hint = "remove `--replay` and give the batches to the standard input of `smc advise`";
             let said = format!("`--replay {name}`: `{name}` is a stream and has no file");
             return wrong(said, hint.to_owned());
@@ -30,11 +39,13 @@ pub fn source<'f>(
         let hint = format!("declare them in the scenario: `tracks {name} = eth_biwi \"obsmat.txt\"`");
         return wrong(format!("`--replay {name}`: the scenario has no such recording"), hint);
     };
-    let unreadable = |said: String| Diagnostic::error(Code::E0702, path.span, said);
     let bytes = files.get(&path.value).map_err(|reason| Diagnostic::error(Code::E0701, path.span, reason))?;
-    let text = std::str::from_utf8(bytes).map_err(|_| unreadable("the file is not UTF-8 text".to_owned()))?;
+    let reading = Reading { trial: trial_of(body)?, ..Reading::default() };
     match Format::from_name(&format.name) {
-        Some(format) => Ok((format, text, path.span)),
-        None => Err(unreadable(format!("`{}` is no format of recordings", format.name))),
+        Some(format) => Ok(TracksFile { format, bytes, reading, place: path.span }),
+        None => {
+            let said = format!("`{}` is no format of recordings", format.name);
+            Err(Diagnostic::error(Code::E0702, path.span, said))
+        }
     }
 }

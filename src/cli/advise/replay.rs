@@ -5,7 +5,7 @@ use crate::advise::Walked;
 use crate::base::geometry::Vec2;
 use crate::cli::complaint;
 use crate::cli::terminal::print_to_reader;
-use crate::data::tracks::{Batch, Reading};
+use crate::data::tracks::Batch;
 use crate::library::Parsed;
 use crate::replay::source;
 use crate::report::advice;
@@ -18,11 +18,11 @@ pub(super) fn batches(
     name: &str,
     arguments: &AdviseCommand,
 ) -> Result<Vec<Batch>, Diagnostic> {
-    let (format, text, place) = source(&parsed.scenario, &parsed.files, name)?;
-    let found = format.read_batches(text, &Reading::default(), arguments.velocity);
+    let file = source(&parsed.scenario, &parsed.files, name)?;
+    let found = file.format.read_batches(file.bytes, &file.reading, arguments.velocity);
     let batches = found.map_err(|errors| {
         let first = errors.first().map_or(String::new(), ToString::to_string);
-        Diagnostic::error(Code::E0702, place, "the recording cannot be read").label(first)
+        Diagnostic::error(Code::E0702, file.place, "the recording cannot be read").label(first)
     })?;
     let first = batches.first().map_or(0.0, |batch| batch.time);
     let last = batches.last().map_or(0.0, |batch| batch.time);
