@@ -235,8 +235,7 @@ pub(super) struct Simulate {
     /// one is meant by the name of its property or its number: `violated=safe`.
     #[arg(long, value_name = "WHICH[=NAME]", requires = "properties")]
     pub(super) keep: Option<Keep>,
-    /// Format of the table: `csv`, `json`, `jsonl`, `pedpy`, `parquet` or `sqlite`. By default the ending of the file shows it
-    /// (`pedpy`: `.txt`), and standard output is `csv`.
+    /// Format of the table. By default the ending of the file shows it, and standard output is `csv`.
     #[arg(long, value_name = "FORMAT", value_parser = trace_formats())]
     pub(super) format: Option<&'static TraceFormat>,
     /// File to write; standard output by default. `{trial}` in the name stands for the number of the trial, so that each has

@@ -24,7 +24,7 @@ pub use format::{Open, Table, TraceFormat, Writer};
 use std::io::{self, Write};
 
 /// All formats.
-pub static FORMATS: [TraceFormat; 6] = [
+pub static FORMATS: &[TraceFormat] = &[
     CSV,
     json::OBJECT,
     json::LINES,

@@ -1,4 +1,4 @@
-//! Trajectories as the SQLite database of `JuPedSim`, version 2 of its tables, which `JuPedSim` and `PedPy` read
+//! Trajectories as the `SQLite` database of `JuPedSim`, version 2 of its tables, which `JuPedSim` and `PedPy` read
 //! (`jupedsim/sqlite_serialization.py`, `pedpy/io/jupedsim_loader.py`): `trajectory_data` with positions and orientations,
 //! `metadata`, `geometry` as well-known text, and `frame_data`, which links each frame to its geometry. Beside the keys of
 //! `JuPedSim`, `metadata` has `scenario`, `seed`, `trial` and `smc`, the version.
@@ -14,7 +14,7 @@ use rusqlite::{Connection, MAIN_DB, params};
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-/// `JuPedSim`'s SQLite.
+/// `JuPedSim`'s `SQLite`.
 pub(super) const SQLITE: TraceFormat = TraceFormat {
     name: "sqlite",
     ending: "sqlite",

@@ -26,14 +26,26 @@ mod with_feature {
     use crate::data::tracks::traces::Traces;
     use bytes::Bytes;
     use parquet::errors::ParquetError;
+    use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::{Field, Row};
+
+    /// Most rows of a table: few bytes can claim any number.
+    const MOST_ROWS: u64 = 1 << 26;
+    /// After so many errors the rest of the table is not read.
+    const MOST_ERRORS: usize = 20;
 
     /// Reads a trial of a whole file. Rows of agents that are absent are passed over.
     ///
     /// # Errors
     /// What is no Parquet file or has no such columns, and every bad row, as a table of comma-separated values.
     pub fn read_parquet(bytes: &[u8], trial: Option<u64>) -> Result<Recording, Vec<LineError>> {
+        // The crate `parquet` asserts what a damaged file breaks.
+        std::panic::catch_unwind(|| read(bytes, trial))
+            .unwrap_or_else(|_| Err(vec![LineError::of_file("the file is damaged")]))
+    }
+
+    fn read(bytes: &[u8], trial: Option<u64>) -> Result<Recording, Vec<LineError>> {
         let damaged = |error: ParquetError| vec![LineError::of_file(format!("the file is damaged: {error}"))];
         let reader = SerializedFileReader::new(Bytes::copy_from_slice(bytes)).map_err(damaged)?;
         let schema = reader.metadata().file_metadata().schema_descr_ptr();
@@ -45,12 +57,29 @@ mod with_feature {
         if !errors.is_empty() {
             return Err(errors);
         }
+        let groups = reader.metadata().row_groups();
+        let is_inside = |column: &ColumnChunkMetaData| {
+            let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
+            let end = start.checked_add(column.compressed_size());
+            start >= 0 && end.is_some_and(|end| end >= start && end <= bytes.len() as i64)
+        };
+        if !groups.iter().flat_map(RowGroupMetaData::columns).all(is_inside) {
+            return Err(vec![LineError::of_file("the file is damaged: a column lies outside of it")]);
+        }
+        let rows = groups.iter().map(|group| group.num_rows() as u64).fold(0, u64::saturating_add);
+        if rows > MOST_ROWS {
+            let message = format!("the file says that it has {rows} rows, more than {MOST_ROWS}");
+            return Err(vec![LineError::of_file(message)]);
+        }
         let mut traces = Traces::default();
         for (k, row) in reader.get_row_iter(None).map_err(damaged)?.enumerate() {
-            let seen =
-                row.map_err(|error| error.to_string()).and_then(|row| read_row(k + 1, &row, &mut traces));
-            if let Err(message) = seen {
+            // What comes after a damaged row is damaged too.
+            let row = row.map_err(damaged)?;
+            if let Err(message) = read_row(k + 1, &row, &mut traces) {
                 errors.push(LineError::whole(k + 1, message));
+            }
+            if errors.len() >= MOST_ERRORS {
+                return Err(errors);
             }
         }
         traces.recording(errors, trial)
