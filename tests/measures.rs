@@ -229,7 +229,7 @@ fn a_trial_that_is_shown_state_by_state_counts_as_it_did() {
 }
 
 /// The Python that has `PedPy`, if any: `SMC_PEDPY_PYTHON`, or `python3`.
-fn python_with_pedpy() -> Option<String> {
+pub(crate) fn python_with_pedpy() -> Option<String> {
     let python = std::env::var("SMC_PEDPY_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let mut asked = Command::new(&python);
     asked.args(["-c", "import pedpy"]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());

@@ -8,6 +8,7 @@ use smc::base::geometry::Vec2;
 use smc::data::geometry::{
     Geometry, Placement, PropertyValue, open_doors, plan, read_dxf, read_geojson, read_wkt,
 };
+use smc::data::table::{Column, FORMATS, Kind, Table, TraceFormat, Value, write};
 use smc::data::tracks::{Format, Reading, Recording, Velocity, read_batch, read_eth_biwi, read_groups};
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -124,6 +125,109 @@ fn table() -> impl Strategy<Value = String> {
     ];
     let line = prop::collection::vec(field, 0..10).prop_map(|fields| fields.join(" "));
     prop::collection::vec(line, 0..20).prop_map(|lines| lines.join("\n"))
+}
+
+/// Names as agents of other programs may have them, with all that ends a cell or a line.
+fn name() -> impl Strategy<Value = String> {
+    let special = prop::sample::select(vec![
+        "cm",
+        "x,y",
+        "\"",
+        "a\"b",
+        "{\"seen\":",
+        "track",
+        "#",
+        "n\nm",
+        "PAR1",
+        "nan",
+        "é",
+        ",",
+    ]);
+    prop_oneof![special.prop_map(str::to_owned), "[a-zé]{1,3}\\[[1-9]\\]"]
+}
+
+/// What a format writes of two trials of agents, one after the other.
+fn written(format: &TraceFormat, agents: &[(String, f64, f64)], trials: &[i64]) -> Vec<u8> {
+    let number = |name: &str| Column::new(name, Kind::Number(""));
+    let [time, x, y, vx, vy] = ["time", "x", "y", "vx", "vy"].map(number);
+    let (trial, agent) = (Column::new("trial", Kind::Whole), Column::new("agent", Kind::Word));
+    let present = Column::new("present", Kind::Truth);
+    let columns = vec![time, trial, agent, x, y, vx, vy, present];
+    let table = Table { columns, interval: 0.5, scenario: "in cm".to_owned(), ..Table::default() };
+    let mut rows = Vec::new();
+    for trial in trials {
+        for step in 0..3 {
+            for (name, x, y) in agents {
+                let (x, y) = (x / f64::from(step + 1), y * (1.0 - *trial as f64 / 7.0));
+                let head =
+                    [Value::Number(f64::from(step) * 0.5), Value::Whole(*trial), Value::Word(name.into())];
+                let here = [x, y, y, x].map(Value::Number).to_vec();
+                rows.push([head.to_vec(), here, vec![Value::Truth(true)]].concat());
+            }
+            let head =
+                [Value::Number(f64::from(step) * 0.5), Value::Whole(*trial), Value::Word("gone".into())];
+            rows.push([head.to_vec(), vec![Value::Missing; 4], vec![Value::Truth(false)]].concat());
+        }
+    }
+    let mut out = Vec::new();
+    write(format, &mut out, &table, rows).unwrap();
+    out
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn traces_are_read_again_with_all_their_bits(
+        agents in prop::collection::btree_map(name(), (-1e6..1e6_f64, -1e3..1e3_f64), 1..6), order in any::<bool>()
+    ) {
+        let mut agents: Vec<(String, f64, f64)> = agents.into_iter().map(|(name, (x, y))| (name, x, y)).collect();
+        if order {
+            agents.reverse();
+        }
+        for format in FORMATS.iter().filter(|format| format.open.is_some()) {
+            let Some(reader) = Format::from_name(format.name) else { continue };
+            let trials: &[i64] = if format.is_of_one_trial { &[2] } else { &[0, 2] };
+            let bytes = written(format, &agents, trials);
+            prop_assert_eq!(Format::of(&bytes).map(|found| found.name), Some(format.name));
+            let trial = (!format.is_of_one_trial).then_some(2);
+            let recording = reader.read(&bytes, &Reading { trial, ..Reading::default() }).unwrap();
+            prop_assert_eq!(recording.ids().collect::<Vec<_>>(), (1..=agents.len() as u32).collect::<Vec<_>>());
+            for (person, (_, x, y)) in recording.people().iter().zip(&agents) {
+                prop_assert_eq!(person.samples.len(), 3, "{}", format.name);
+                for (step, sample) in (0_u32..).zip(&person.samples) {
+                    let position = [x / f64::from(step + 1), y * (1.0 - 2.0 / 7.0)];
+                    let found = [sample.position.x, sample.position.y];
+                    prop_assert_eq!(found.map(f64::to_bits), position.map(f64::to_bits), "{}", format.name);
+                    if !format.is_of_one_trial {
+                        prop_assert_eq!(sample.velocity, Some(Vec2::new(position[1], position[0])));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn damaged_traces_are_survived(
+        places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
+        end in any::<prop::sample::Index>(), cut in any::<bool>()
+    ) {
+        let agents = [("a".to_owned(), 1.0, 2.0), ("b".to_owned(), 3.0, 4.0)];
+        for format in FORMATS.iter().filter(|format| format.open.is_some()) {
+            let Some(reader) = Format::from_name(format.name) else { continue };
+            let mut bytes = written(format, &agents, &[2]);
+            for (place, byte) in &places {
+                let at = place.index(bytes.len());
+                bytes[at] = *byte;
+            }
+            if cut {
+                bytes.truncate(end.index(bytes.len()));
+            }
+            if let Err(errors) = reader.read(&bytes, &Reading::default()) {
+                prop_assert!(!errors.is_empty());
+            }
+        }
+    }
 }
 
 proptest! {

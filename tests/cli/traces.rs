@@ -407,7 +407,7 @@ process blinker { var b = true  when b & late.on at 1e9 /s -> b = false  when !b
     assert!(said.contains("at 0.4 s: more than 1048576 jumps") && said.contains("of `blinker`"), "{said}");
 }
 
-/// What a program says of traces whose names are hostile, and whose numbers have all their digits.
+/// Three agents that go the same way.
 const CROWD: &str = "horizon = 1 s\nstep = 0.1 s\n
     kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
     agents crowd[3]: adult { at = uniform in rect (0, 0) .. (5, 5)  route = (20, 0) }";
@@ -500,4 +500,78 @@ fn what_a_format_of_traces_cannot_hold_is_refused() {
     assert!(
         place.path("t-0.txt").exists() && place.path("t-1.txt").exists() && !place.path("t.txt").exists()
     );
+}
+
+/// The formats of a build: those that no feature has left out.
+fn is_built(name: &str) -> bool {
+    smc::data::table::FORMATS.iter().any(|format| format.name == name && format.open.is_some())
+}
+
+#[test]
+fn a_format_that_was_left_out_says_how_to_build_it() {
+    let place = Place::new(&[("a.scn", CROWD)]);
+    for name in ["parquet", "sqlite"].into_iter().filter(|name| !is_built(name)) {
+        for words in [["--format".to_owned(), name.to_owned()], ["-o".to_owned(), format!("t.{name}")]] {
+            let said = place.call(&["simulate", "a.scn", &words[0], &words[1]]);
+            assert_eq!(said.code, Some(2), "{name}");
+            assert!(said.err.contains(&format!("`--features {name}`")), "{}", said.err);
+        }
+    }
+}
+
+#[test]
+fn pedpy_reads_what_is_written_for_it() {
+    let Some(python) = crate::measures::python_with_pedpy() else {
+        println!("skipped: PedPy is not installed; set SMC_PEDPY_PYTHON to a Python that has it");
+        return;
+    };
+    let scenario = "scenario \"a walk in cm, framerate: 3\"\nhorizon = 2 s\nstep = 0.05 s\nscene {
+        wall (-1, -1) -- (9, -1) -- (9, 6) -- (-1, 6) -- (-1, -1)  obstacle desk: rect (6, 2) .. (7, 3)  wall (3, 6) -- (3, 5) }
+        kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
+        agent cm: adult { at = (1, 1)  route = (8, 1) }
+        agents framerate[4]: adult { at = uniform in rect (0, 0) .. (5, 4)  route = (8, 5) }";
+    let place = Place::new(&[("a.scn", scenario)]);
+    let table = rows(&place, "a.scn", &["--every", "2"]);
+    let mut names: Vec<&str> = Vec::new();
+    let mut expected = String::new();
+    for row in &table {
+        let name = row["agent"].as_str().unwrap();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+        let id = names.iter().position(|known| *known == name).unwrap() + 1;
+        let frame = (row["time"].as_f64().unwrap() / 0.1).round();
+        expected += &format!("{id} {frame} {} {}\n", row["x"], row["y"]);
+    }
+    place.write("expected", expected.as_bytes());
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cli/traces.py");
+    for (file, name) in [("a.txt", "pedpy"), ("a.sqlite", "sqlite")] {
+        if !is_built(name) {
+            println!("skipped: the feature `{name}` is off");
+            continue;
+        }
+        let said = place.call(&["simulate", "a.scn", "--every", "2", "-o", file]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let path = place.path(file);
+        let words = [script, path.to_str().unwrap(), place.path("expected").to_str().unwrap(), "10"]
+            .map(str::to_owned);
+        let said = std::process::Command::new(&python).args(words).output().unwrap();
+        assert!(said.status.success(), "{file}: {}", String::from_utf8_lossy(&said.stderr));
+    }
+}
+
+#[test]
+fn a_trial_of_a_table_is_replayed() {
+    let replayed = "horizon = 1 s\nstep = 0.1 s\ntracks seen = csv \"t.csv\" { trial = TRIAL }\n\
+        kind adult: sfm preset helbing2000\nagent user: adult from seen at 0.1 s id 1\n\
+        agents others: adult from seen at 0.1 s except 1\n";
+    let properties = "property near = F<=0.5 s (exists a in others: distance(user, a) < 1 m)\n";
+    let place = Place::new(&[("a.scn", CROWD), ("p.bltl", properties)]);
+    assert_eq!(place.call(&["simulate", "a.scn", "-n", "3", "-o", "t.csv"]).code, Some(0));
+    for (trial, code) in [("1", 0), ("7", 2), ("0.5", 2), ("1 s", 2)] {
+        place.write("b.scn", replayed.replace("TRIAL", trial).as_bytes());
+        let said = place.call(&["monitor", "b.scn", "p.bltl", "--replay", "seen"]);
+        assert_eq!(said.code, Some(code), "{trial}: {}", said.err);
+        assert_eq!(code == 2, said.err.contains("trial"), "{}", said.err);
+    }
 }
