@@ -11,6 +11,7 @@ mod bounds;
 mod call_arguments;
 mod consequences;
 mod contests;
+mod depth;
 pub mod dimension;
 mod doubt;
 mod elaborator;

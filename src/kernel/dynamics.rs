@@ -21,10 +21,7 @@
 //! path taken changes no bit. Slots that are absent or in a lane without a trial keep their bytes.
 //!
 //! In 3 v0 is at most what the headway to those ahead allows (`force::ahead`), as it was at the beginning of the step. An
-//! agent that stands, and so has no v0, is driven back to where it came to rest: there it would come by itself at the
-//! moment when v0 ends, so that whoever stops undisturbed stops as before. With `x + v tau` for where it would come to rest
-//! now, its driving velocity is `(rest - x - v tau)/tau`, at most `hold`: a displacement fades out with the relaxation time
-//! and without a swing.
+//! agent that stands, and so has no v0, is driven back to where it came to rest (`rest`).
 
 use super::behaviour;
 use super::cells::Cells;
@@ -36,6 +33,7 @@ use super::near::Close;
 use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
+use super::rest::{back, rest};
 use super::start;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
@@ -44,7 +42,7 @@ use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::model::{Parameter, TOP_SPEED};
+use crate::model::TOP_SPEED;
 
 /// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
 /// one after `refresh` changes no bit.
@@ -417,41 +415,6 @@ impl Mover<'_> {
         let dx = part.load(&state.motion.x[block]) - part.load(x0);
         let dy = part.load(&state.motion.y[block]) - part.load(y0);
         travel(part, state, block, moving, (dx, dy));
-    }
-}
-
-/// The driving velocity with which those who stand return to where they came to rest.
-#[inline(always)]
-fn back<S: Simd>(
-    part: Part<S>,
-    state: &State,
-    block: usize,
-    (x, y): (Doubles<S>, Doubles<S>),
-    (vx, vy): (Doubles<S>, Doubles<S>),
-) -> (Doubles<S>, Doubles<S>) {
-    let tau = part.load(&state.bodies[Parameter::Tau][block]);
-    let dx = part.load(&state.driving.rest_x[block]) - (x + vx * tau);
-    let dy = part.load(&state.driving.rest_y[block]) - (y + vy * tau);
-    let pace = (dx * dx + dy * dy).sqrt() / tau;
-    let limit = part.load(&state.bodies[Parameter::Hold][block]);
-    let rate = pace.simd_gt(limit).select(limit / pace, part.c(1.0)) / tau;
-    (dx * rate, dy * rate)
-}
-
-/// Notes where those came or come to rest who began to stand with the last state, and forgets it of those who do not stand.
-#[inline(always)]
-fn rest<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
-    let none = part.c(f64::INFINITY);
-    let stands = part.load(&state.driving.speed[block]).simd_eq(part.c(0.0));
-    let old = part.load(&state.driving.rest_x[block]);
-    let rests = old.simd_lt(none);
-    let (here, changed) = (part.mask(moving), stands ^ rests);
-    if (here & changed).any_true() {
-        let tau = part.load(&state.bodies[Parameter::Tau][block]);
-        let x = part.load(&state.motion.x[block]) + part.load(&state.motion.vx[block]) * tau;
-        let y = part.load(&state.motion.y[block]) + part.load(&state.motion.vy[block]) * tau;
-        part.store_in(here & changed, stands.select(x, none), &mut state.driving.rest_x[block]);
-        part.store_in(here & changed, stands.select(y, none), &mut state.driving.rest_y[block]);
     }
 }
 

@@ -24,6 +24,7 @@ mod passing;
 pub mod plan;
 pub mod process;
 pub mod program;
+mod rest;
 pub mod run;
 pub mod start;
 pub mod state;
