@@ -280,6 +280,7 @@ impl<'a> Adviser<'a> {
             seed: self.options.seed,
             branch: (advice.cycle & 0xffff) as u16,
             explains: false,
+            shows_evidence: false,
             line: CommandLine::default(),
             only: vec![query.index],
             place: &|_: Span| (String::new(), 0),

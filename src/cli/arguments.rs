@@ -5,6 +5,7 @@ use super::destination::Destination;
 use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
+use super::plot::PlotCommand;
 use super::replay::{EvaluateCommand, MonitorCommand};
 use super::simulate::choice::Keep;
 use super::simulate::format::parse_trace_format;
@@ -71,6 +72,8 @@ pub(super) enum Command {
     Gait(Box<GaitCommand>),
     /// Run many trials and write how agents walk, leg by leg: lengths, times, steps, traces, a picture.
     Walk(Box<WalkCommand>),
+    /// Draw a figure of results as SVG: a sweep, a ranking, a distribution, how evidence grew, calibration.
+    Plot(PlotCommand),
     /// Compare two sets of recorded or simulated walks.
     CompareWalks(CompareWalks),
     /// Detect a change of the probability of recorded or streamed outcomes.
@@ -128,6 +131,9 @@ pub(super) struct Questions {
     /// Also write a self-contained HTML page with charts and a player of the trials behind the results.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
+    /// Also say in JSON how the evidence grew, for `smc plot --figure evidence`; `--report` shows it, too.
+    #[arg(long)]
+    pub(super) evidence: bool,
     /// Answer only this query: the name of its property, or its number in writing order, starting at 0 (each measure of a
     /// list has its own number). May be given several times.
     #[arg(long, value_name = "NAME")]

@@ -100,6 +100,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         seed: arguments.seed,
         branch: 0,
         explains: true,
+        shows_evidence: arguments.evidence || arguments.report.is_some(),
         line: line(arguments),
         only: only.clone(),
         place: &place,

@@ -22,6 +22,7 @@ mod outputs;
 mod page;
 mod parts;
 mod path;
+mod plot;
 mod progress;
 mod replay;
 mod shard;
@@ -143,6 +144,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Infer(command) => infer::run(command, colors),
         Command::Gait(command) => gait::run(command, colors),
         Command::Walk(command) => walk::run(command, colors),
+        Command::Plot(command) => plot::run(command, colors),
         Command::CompareWalks(command) => compare_walks::run(command, colors),
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),

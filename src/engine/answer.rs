@@ -5,12 +5,13 @@ use super::call::Call;
 use super::cause;
 use super::cell::Item;
 use super::compare::CompareSampling;
-use super::estimate::{EstimateEntry, EstimateSampling};
+use super::entry::EstimateEntry;
+use super::estimate::EstimateSampling;
 use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
 use super::outcome::{
-    AskedQuery, Certificate, Certified, Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness,
+    AskedQuery, Certificate, Certified, Counts, Evidence, Kind, QueryResult, Shows, Stop, Verdict, Witness,
 };
 use super::prepared::PreparedWorld;
 use super::rank::RankSampling;
@@ -192,6 +193,7 @@ impl Answers<'_> {
                 );
             }
         }
+        result.evidence = entry.evidence();
         let cut = was_cut(prepared, measure.target.column, &entry.tally);
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = entry.procedure.distribution().filter(|_| known);
@@ -436,6 +438,10 @@ impl Answers<'_> {
                 witness::find(prepared, column, options[arm].advice, &picks, calls, &own, &result.unit);
         }
         result.rank = Some(listed);
+        result.evidence = ranked.evidence.map(|snapshots| {
+            let labels = options.iter().map(|option| option.label.clone()).collect();
+            Evidence::Options { labels, snapshots }
+        });
         result.elapsed_s = rank.spent;
         Ok(Some(result))
     }

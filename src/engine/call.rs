@@ -12,6 +12,8 @@ pub struct Call<'c> {
     pub branch: u16,
     /// Whether witnesses of its results are looked for, which takes time.
     pub explains: bool,
+    /// Whether its results say how their evidence grew.
+    pub shows_evidence: bool,
     /// The files and settings of the call, for replay lines.
     pub line: CommandLine,
     /// Indices of the queries to ask; all of them if empty.

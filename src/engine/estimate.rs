@@ -5,7 +5,8 @@
 //! no level could stop it; the proofs come when the others have stopped.
 
 use super::budget::Budget;
-use super::cell::{Cell, Item, Reading};
+use super::cell::Item;
+use super::entry::EstimateEntry;
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
@@ -13,10 +14,8 @@ use super::outcome::Stop;
 use super::pilot::{self, Pilot};
 use super::prepared::PreparedWorld;
 use super::procedure::Procedure;
-use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::math;
-use crate::compile::study::{Ask, Query};
 use crate::stats::Levels;
 use crate::stats::calibration::Patience;
 
@@ -26,30 +25,6 @@ const MUCH_LONGER: f64 = 16.0;
 const WORTH_TIMING: f64 = 1.0;
 /// Largest round.
 pub(super) const LARGEST_ROUND: u64 = 16_384;
-
-/// One query on its way.
-pub(super) struct EstimateEntry<'q> {
-    /// The query.
-    pub(super) query: &'q Query,
-    /// Column of the prepared world.
-    pub(super) column: usize,
-    /// Range of an expectation.
-    pub(super) range: Option<(f64, f64)>,
-    /// Its procedure.
-    pub(super) procedure: Procedure,
-    /// What it has consumed.
-    pub(super) tally: Tally,
-    /// What it has read so far, for forecasts.
-    pub(super) statistics: PilotStatistics,
-    /// Whether it has to know more of its procedure before it can read more.
-    pub(super) waits: bool,
-    /// Whether it came to a trial in which the model is wrong: it reads no more and has no result.
-    pub(super) lost: bool,
-    /// Why it stopped.
-    pub(super) stop: Option<Stop>,
-    /// Seconds from the start of the estimate to its stop.
-    pub(super) seconds: f64,
-}
 
 /// Checks and estimates of one prepared world on their way.
 pub(super) struct EstimateSampling<'q> {
@@ -81,19 +56,6 @@ pub(super) struct FaultyTrial {
     pub(super) index: u64,
     /// What is wrong.
     pub(super) fault: Fault,
-}
-
-impl EstimateEntry<'_> {
-    /// Whether it reads on.
-    const fn is_open(&self) -> bool {
-        self.stop.is_none() && !self.waits && !self.lost
-    }
-
-    /// Whether it had stopped before a trial. Whoever stops later in the same round is one who would have seen it in a
-    /// smaller round, so that only this leaves no trace of the size of rounds.
-    pub(super) fn stopped_before(&self, index: u64) -> bool {
-        self.stop.is_some() && self.tally.counts.trials <= index
-    }
 }
 
 impl<'q> EstimateSampling<'q> {
@@ -374,77 +336,6 @@ impl<'q> EstimateSampling<'q> {
             }
         }
         faulty.map_or(Ok(()), |at| Err(items[at]))
-    }
-}
-
-impl EstimateEntry<'_> {
-    /// Reads the trials of a round up to where it stops; the place of the trial in which the model is wrong, if it
-    /// comes to it.
-    fn read<'c>(
-        &mut self,
-        items: &[Item],
-        cells: impl Iterator<Item = &'c Cell> + Clone,
-        most: u64,
-    ) -> Result<Option<Stop>, usize> {
-        let (mut consumed, mut finished) = (0, false);
-        // At least one is read, whatever the limit.
-        let room = most.saturating_sub(self.tally.counts.trials).max(1);
-        for cell in cells.clone().take(items.len()) {
-            if cell.reading == Reading::Faulty {
-                return Err(consumed);
-            }
-            consumed += 1;
-            finished = self.procedure.observe(cell);
-            if finished || consumed as u64 == room {
-                break;
-            }
-        }
-        self.count(items[..consumed].iter().map(|item| item.index).zip(cells));
-        let capped = self.tally.counts.trials >= most;
-        let waits = self.procedure.waits_for().is_some();
-        // At the limit nothing more would be read with a level: it matters only if it has stopped here.
-        self.waits = waits && (!capped || self.procedure.may_have_stopped());
-        Ok(if finished && !waits {
-            Some(self.reason())
-        } else {
-            (capped && !self.waits).then_some(Stop::Cap)
-        })
-    }
-
-    /// Counts trials with their indices.
-    fn count<'c>(&mut self, trials: impl Iterator<Item = (u64, &'c Cell)> + Clone) {
-        if let Some(held) = self.tally.add_truths(&trials) {
-            self.statistics.count(trials.count() as u64, held);
-            return;
-        }
-        for (index, cell) in trials {
-            self.tally.add(index, cell, self.range);
-            if let (Ask::Check { threshold, at_least, or_equal, .. }, Reading::Value(value)) =
-                (&self.query.ask, cell.reading)
-            {
-                let beyond = if *at_least { value > *threshold } else { value < *threshold };
-                self.tally.side(index, beyond || (*or_equal && value == *threshold));
-            }
-            self.statistics.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
-        }
-    }
-
-    /// Why a finished procedure stopped.
-    fn reason(&self) -> Stop {
-        match &self.procedure {
-            procedure if procedure.is_capped() => Stop::Cap,
-            procedure if procedure.split() => Stop::Unresolved,
-            // A plan whose answer is forced stops before its end.
-            procedure if procedure.is_planned() => {
-                let all = procedure.limit().is_none_or(|size| self.tally.counts.trials >= size);
-                if all { Stop::Plan } else { Stop::Boundary }
-            }
-            procedure if self.tally.counts.unresolved > 0 && procedure.is_wide(&self.query.ask) => {
-                Stop::Unresolved
-            }
-            Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. } => Stop::Boundary,
-            _ => Stop::Width,
-        }
     }
 }
 

@@ -14,6 +14,7 @@ mod columns;
 mod compare;
 mod culprits;
 mod decider;
+mod entry;
 mod estimate;
 pub mod executor;
 mod fault;

@@ -6,6 +6,7 @@ mod asked;
 mod comparison;
 mod counts;
 mod distribution;
+mod evidence;
 mod interval;
 mod ranking;
 mod rare;
@@ -21,6 +22,7 @@ pub use asked::{AskedQuery, Kind};
 pub use comparison::{Comparison, Side};
 pub use counts::{ConsumedTrials, Counts};
 pub use distribution::{Distribution, Histogram, Quantile, Step};
+pub use evidence::{Evidence, Snapshot, Standing, next_after};
 pub use interval::Interval;
 pub use ranking::{RankedOption, Ranking, Status};
 pub use rare::Rare;
@@ -136,6 +138,8 @@ pub struct QueryResult {
     pub distribution: Option<Distribution>,
     /// Details of an estimate by splitting.
     pub rare: Option<Rare>,
+    /// How the evidence grew, where that was asked for.
+    pub evidence: Option<Evidence>,
 }
 
 impl QueryResult {
@@ -165,6 +169,7 @@ impl QueryResult {
             rank: None,
             distribution: None,
             rare: None,
+            evidence: None,
         }
     }
 }

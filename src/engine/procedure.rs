@@ -233,6 +233,14 @@ impl Procedure {
         }
     }
 
+    /// The evidence of a test for above and for below.
+    pub(super) fn weights(&self) -> Option<stats::Weights> {
+        match self {
+            Self::Test(test) => test.weights(),
+            _ => None,
+        }
+    }
+
     /// What the decision of a test certifies.
     pub(super) fn statement(&self) -> Option<Statement> {
         let decision = self.decision()?;

@@ -8,7 +8,7 @@ use super::cell::{Item, Reading, Series};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
-use super::outcome::Stop;
+use super::outcome::{Standing, Stop, next_after};
 use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
@@ -46,6 +46,8 @@ pub(super) struct RankOutcome {
     pub(super) stop: Stop,
     /// The largest gap that there can be: 1 for probabilities, the range for metrics.
     pub(super) scale: f64,
+    /// How far the options were on the way; `None` where nobody asks.
+    pub(super) evidence: Option<Vec<Standing>>,
 }
 
 /// What is ranked.
@@ -143,6 +145,8 @@ pub(super) struct RankSampling<'s> {
     tallies: Vec<Tally>,
     /// The mean of each option, for expectations.
     means: Vec<Mean>,
+    /// How far the options were; `None` where nobody asks.
+    evidence: Option<Vec<Standing>>,
     /// Seconds that it has taken so far.
     pub(super) spent: f64,
 }
@@ -159,7 +163,12 @@ struct Round {
 
 impl<'s> RankSampling<'s> {
     /// A ranking of the options of a setup.
-    pub(super) fn new(query: &'s Query, setup: RankSetup<'s>, series: Series) -> Result<Self, Fault> {
+    pub(super) fn new(
+        query: &'s Query,
+        setup: RankSetup<'s>,
+        series: Series,
+        shows_evidence: bool,
+    ) -> Result<Self, Fault> {
         let procedure = Procedure::new(&setup)?;
         let range = match &setup.kind {
             MeasureKind::Expectation { range, .. } => Some(*range),
@@ -183,7 +192,20 @@ impl<'s> RankSampling<'s> {
             None => Vec::new(),
         };
         let tallies = vec![Tally::default(); arms];
-        Ok(Self { query, setup, jobs, job_of, procedure, range, ahead: None, tallies, means, spent: 0.0 })
+        let evidence = shows_evidence.then(Vec::new);
+        Ok(Self {
+            query,
+            setup,
+            jobs,
+            job_of,
+            procedure,
+            range,
+            ahead: None,
+            tallies,
+            means,
+            evidence,
+            spent: 0.0,
+        })
     }
 
     /// The query.
@@ -345,6 +367,10 @@ impl<'s> RankSampling<'s> {
                 break budget.stopped_by();
             }
             let consumed: u64 = self.tallies.iter().map(|t| t.counts.trials).sum();
+            let noted = self.evidence.as_ref().and_then(|list| list.last()).map_or(0, |last| last.trials);
+            if consumed >= next_after(noted) {
+                self.note(|arm| round.shares.iter().any(|share| share.arm == arm));
+            }
             let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
             if left == 0 || round.items.is_empty() {
                 break Stop::Cap;
@@ -373,8 +399,10 @@ impl<'s> RankSampling<'s> {
             watch.consumed(&self.query.text, self.tallies.iter().map(|t| t.counts.trials).sum(), None);
         };
         self.spent = spent + budget.elapsed() - started;
-        let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
         let choice = self.procedure.choice();
+        self.note(|arm| arm == choice.arm || choice.open.contains(&arm) || choice.certified.contains(&arm));
+        let evidence = self.evidence.take();
+        let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
         let values = (0..arms)
             .map(|arm| match means.get(arm) {
                 Some(mean) => {
@@ -393,7 +421,18 @@ impl<'s> RankSampling<'s> {
             })
             .collect();
         let finished = self.procedure.finished();
-        Ok(Some(RankOutcome { tallies, values, finished, choice, stop, scale: self.scale() }))
+        Ok(Some(RankOutcome { tallies, values, finished, choice, stop, scale: self.scale(), evidence }))
+    }
+
+    /// Notes how far the options are, and who is still in the race; of one number of trials once.
+    fn note(&mut self, is_open: impl Fn(usize) -> bool) {
+        if let Some(list) = &mut self.evidence {
+            let standing = |(arm, tally): (usize, &Tally)| (tally.counts.trials, is_open(arm));
+            let options: Vec<(u64, bool)> = self.tallies.iter().enumerate().map(standing).collect();
+            let trials = options.iter().map(|(trials, _)| trials).sum();
+            list.retain(|last| last.trials < trials);
+            list.push(Standing { trials, options });
+        }
     }
 
     /// Shows the first trials of a round to the procedure, option by option; false where these are not all.

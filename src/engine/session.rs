@@ -5,7 +5,8 @@ use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
 use super::cell::Series;
 use super::compare::{CompareSampling, Sides};
-use super::estimate::{Advance, EstimateEntry, EstimateSampling};
+use super::entry::EstimateEntry;
+use super::estimate::{Advance, EstimateSampling};
 use super::executor::Executor;
 use super::fault::{Fault, MOST_VALUES};
 use super::flaw::Flaw;
@@ -364,6 +365,7 @@ impl<'a> Session<'a> {
             waits: false,
             lost: false,
             stop: None,
+            evidence: self.call.shows_evidence.then(Vec::new),
             seconds: 0.0,
         })
     }
@@ -397,7 +399,8 @@ impl<'a> Session<'a> {
             kind: measure.kind.clone(),
             rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
         };
-        RankSampling::new(query, setup, Series { seed: self.call.seed, branch: self.call.branch })
+        let series = Series { seed: self.call.seed, branch: self.call.branch };
+        RankSampling::new(query, setup, series, self.call.shows_evidence)
     }
 
     /// Runs a group for its share of the time.

@@ -242,7 +242,10 @@ impl Steppers {
         let others = Self::others(situation, radius);
         let standing: Vec<OtherBody> =
             others.iter().copied().filter(|other| other.velocity.norm() < STANDS).collect();
-        let is_blocked = known.tries > 0 && known.tries.is_multiple_of(TRIES) && situation.advice.is_none();
+        let is_blocked = known.tries > 0
+            && known.tries.is_multiple_of(TRIES)
+            && situation.advice.is_none()
+            && !standing.is_empty();
         let own = situation.own_speed;
         let relative = situation.parameter(Parameter::Speed) / own;
         // A learned gait has a speed of its own, unless the kind sets one.

@@ -200,7 +200,16 @@ impl Model {
             Some(make) => &**make,
             None => &find,
         };
-        let call = Call { seed: options.seed, branch: 0, explains: true, line, only, place: &place, drivers };
+        let call = Call {
+            seed: options.seed,
+            branch: 0,
+            explains: true,
+            shows_evidence: false,
+            line,
+            only,
+            place: &place,
+            drivers,
+        };
         let threads = options.executor().map_err(|fault| wrong(vec![refusal(&fault)]))?;
         let outcome = run(&study, &call, &threads, &options.budget(), &Nobody);
         let run: CallResult = outcome.map_err(|fault| wrong(refusals(&fault)))?;

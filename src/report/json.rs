@@ -7,8 +7,8 @@
 use super::setting;
 use crate::base::random;
 use crate::engine::outcome::{
-    CallResult, Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare,
-    Shows, Side, Witness,
+    CallResult, Comparison, Counts, Distribution, Evidence, Finding, Interval, Method, QueryResult, Ranking,
+    Rare, Shows, Side, Snapshot, Standing, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -71,7 +71,8 @@ fn finding(finding: &Finding) -> Value {
     })
 }
 
-fn result(result: &QueryResult) -> Value {
+/// A result as a JSON value.
+pub(super) fn result(result: &QueryResult) -> Value {
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
     put("index", json!(result.asked.index));
@@ -132,6 +133,9 @@ fn result(result: &QueryResult) -> Value {
     }
     if let Some(found) = &result.rare {
         put("splitting", rare(found));
+    }
+    if let Some(found) = &result.evidence {
+        put("evidence", evidence(found));
     }
     put("warnings", json!(result.warnings));
     put("witnesses", result.witnesses.iter().map(|one| witness(one, result.against)).collect());
@@ -221,6 +225,31 @@ fn rare(found: &Rare) -> Value {
         "floor": found.floor,
         "agrees": found.agrees,
     })
+}
+
+fn evidence(found: &Evidence) -> Value {
+    match found {
+        Evidence::Values(snapshots) => {
+            let weights = snapshots.iter().find_map(|one| one.weights);
+            let shown = |one: &Snapshot| {
+                let mut object = Map::from_iter([("trials".to_owned(), json!(one.trials))]);
+                object.extend(interval(&one.value));
+                if let Some([above, below]) = one.weights {
+                    object.insert("above".into(), number(above.log));
+                    object.insert("below".into(), number(below.log));
+                }
+                Value::Object(object)
+            };
+            let thresholds = weights
+                .map(|[above, below]| json!({ "above": number(above.threshold), "below": number(below.threshold) }));
+            json!({ "thresholds": thresholds, "snapshots": snapshots.iter().map(shown).collect::<Vec<_>>() })
+        }
+        Evidence::Options { labels, snapshots } => {
+            let option = |(trials, open): &(u64, bool)| json!({ "trials": trials, "open": open });
+            let shown = |one: &Standing| json!({ "trials": one.trials, "options": one.options.iter().map(option).collect::<Vec<_>>() });
+            json!({ "options": labels, "snapshots": snapshots.iter().map(shown).collect::<Vec<_>>() })
+        }
+    }
 }
 
 fn distribution(found: &Distribution) -> Value {

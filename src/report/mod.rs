@@ -11,6 +11,7 @@ pub mod csv;
 mod escape;
 pub mod evaluate;
 mod exit;
+pub mod figure;
 pub mod forecast;
 pub mod gait;
 pub mod github;

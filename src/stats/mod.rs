@@ -67,4 +67,4 @@ pub use procedures::{
 pub use quality::Quality;
 pub use sequential::{Readings, Rule, Sequential};
 pub use spec::{Chosen, Spec};
-pub use test::{Claim, Decision, Hypothesis, Statement, Test, Verdict};
+pub use test::{Claim, Decision, Hypothesis, Statement, Test, Verdict, Weight, Weights};

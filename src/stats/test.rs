@@ -1,6 +1,6 @@
 //! What tests of P >= theta have in common, and unresolved trials.
 
-use super::{Readings, Rule, Sequential};
+use super::{Counts, Readings, Rule, Sequential};
 
 /// What a test decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,8 +58,25 @@ pub struct Statement {
     pub error: f64,
 }
 
+/// The logarithm of the evidence for a decision, and what it has to reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    /// The logarithm of the evidence.
+    pub log: f64,
+    /// The decision is made where this is reached.
+    pub threshold: f64,
+}
+
+/// The evidence for deciding above, and for deciding below.
+pub type Weights = [Weight; 2];
+
 /// The rule of a test of P >= theta.
 pub trait Test: Rule<Answer = Option<Decision>> {
+    /// The evidence after some outcomes; of tests that only count there is none.
+    fn weights(&self, _: Counts) -> Option<Weights> {
+        None
+    }
+
     /// What `decision` certifies, whatever P is: no caveat about the indifference region is left.
     fn certifies(&self, decision: Decision) -> Statement;
 }
@@ -86,6 +103,15 @@ pub enum Verdict {
 }
 
 impl<R: Test + Clone> Readings<R> {
+    /// The evidence on which both readings agree: for above that with unresolved trials as failures, for below that with
+    /// them as successes.
+    pub fn weights(&self) -> Option<Weights> {
+        let (low, high) = self.readings();
+        let [above, _] = low.rule().weights(low.counts())?;
+        let [_, below] = high.rule().weights(high.counts())?;
+        Some([above, below])
+    }
+
     /// How both readings came out, once both have decided. The error bound of the test holds for an agreed decision,
     /// however the unresolved trials would have ended.
     pub fn verdict(&self) -> Option<Verdict> {

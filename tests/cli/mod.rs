@@ -13,6 +13,7 @@ mod inputs;
 mod limits;
 mod outputs;
 mod paths;
+mod plot;
 mod reasons;
 mod replay;
 mod shards;

@@ -58,8 +58,8 @@ impl Tree {
 }
 
 impl HybridAStar {
-    /// Steps to the goal, the first one first. A person who stands begins with either foot, half of the starters in any
-    /// direction.
+    /// Steps to the goal, or past those around whom the walk leads, the first one first. A person who stands begins with
+    /// either foot, half of the starters in any direction.
     pub(super) fn steps(
         &self,
         walk: &Walk,
@@ -99,6 +99,12 @@ impl HybridAStar {
                 }
             }
         }
+        let reach = walk.ground.free().reach();
+        let beyond = walk.around.iter().map(|other| (other.at - pose.at).norm() + other.radius + reach);
+        let beyond = beyond.reduce(f64::max);
+        let is_past = |from: &Pose, left: &Way| {
+            beyond.is_some_and(|beyond| left.length < way.length && (from.at - pose.at).norm() > beyond)
+        };
         let mut closed = BTreeSet::new();
         let mut expansions = 0;
         while let Some(Reverse((_, _, at))) = tree.queue.pop() {
@@ -109,6 +115,9 @@ impl HybridAStar {
             }
             expansions += 1;
             let Some(way) = walk.way(from.at) else { continue };
+            if is_past(&from, &way) {
+                return Ok(tree.chain(at));
+            }
             if self.is_as_published {
                 if (from.at - walk.goal).norm() <= TOLERANCE {
                     return Ok(tree.chain(at));

@@ -5,6 +5,8 @@ use super::histogram;
 use crate::engine::outcome::{
     Interval, QueryResult, RankedOption, Shortfall, Side, Status, Verdict, Witness,
 };
+use crate::report::figure;
+use crate::report::json;
 use crate::report::number::{count, counted};
 use crate::report::phrase::{certified, endless, one_line, settings};
 use crate::report::text;
@@ -46,6 +48,8 @@ pub(super) struct Facts {
     pub(super) trials: String,
     /// The histogram as SVG; may be empty.
     pub(super) histogram: String,
+    /// Distribution function and evidence as SVG; may be empty.
+    pub(super) figure: String,
     pub(super) warnings: Vec<String>,
     pub(super) witnesses: Vec<Shown>,
     pub(super) replay: String,
@@ -161,6 +165,7 @@ fn facts(
         given: result.asked.given.clone(),
         trials: text::trials(result),
         histogram: histogram.unwrap_or_default(),
+        figure: if swept { String::new() } else { figure::of_result(&json::result(result)) },
         warnings: result.warnings.clone(),
         witnesses: result.witnesses.iter().map(witness).collect(),
         replay: result.replay.clone(),

@@ -8,7 +8,7 @@ use crate::base::math;
 use crate::base::special::{beta_tails, ln_beta};
 use crate::stats::invalid::{Invalid, probability, region};
 use crate::stats::sprt::SLACK;
-use crate::stats::{Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test};
+use crate::stats::{Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test, Weight, Weights};
 
 /// Beyond this no count is exact as a double; thresholds closer to 0 or 1 than that never decide.
 const MOST_TRIALS: u64 = 1 << 53;
@@ -104,6 +104,14 @@ impl OneSided {
     }
 }
 
+/// The evidence of two processes, of which the second counts failures.
+fn weights(above: &OneSided, below: &OneSided, Counts { successes, failures }: Counts) -> Weights {
+    [
+        Weight { log: above.log(successes, failures), threshold: above.threshold },
+        Weight { log: below.log(failures, successes), threshold: below.threshold },
+    ]
+}
+
 /// P above or below theta, each with its own error, for every P.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
@@ -140,8 +148,9 @@ impl Evidence {
     }
 
     /// The logarithms of the evidence that P is above theta and that it is below.
-    pub fn logs(&self, Counts { successes, failures }: Counts) -> (f64, f64) {
-        (self.above.log(successes, failures), self.below.log(failures, successes))
+    pub fn logs(&self, counts: Counts) -> (f64, f64) {
+        let [above, below] = weights(&self.above, &self.below, counts);
+        (above.log, below.log)
     }
 }
 
@@ -163,6 +172,10 @@ impl Rule for Evidence {
 }
 
 impl Test for Evidence {
+    fn weights(&self, counts: Counts) -> Option<Weights> {
+        Some(weights(&self.above, &self.below, counts))
+    }
+
     fn certifies(&self, decision: Decision) -> Statement {
         let (above, below) = self.hypothesis.claims(self.theta);
         match decision {
@@ -231,6 +244,10 @@ impl Rule for ThreeWay {
 }
 
 impl Test for ThreeWay {
+    fn weights(&self, counts: Counts) -> Option<Weights> {
+        Some(weights(&self.above, &self.below, counts))
+    }
+
     fn certifies(&self, decision: Decision) -> Statement {
         let (above, below) = self.hypothesis.claims(self.theta);
         let claim = match decision {

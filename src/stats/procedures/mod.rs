@@ -28,7 +28,7 @@ use super::sequential::any_rule;
 use super::spec::{
     ALPHA, Argument, BETA, DELTA, EPSILON, Forecast, Guess, Kind, Make, Serves, Spec, TEST_SCATTER,
 };
-use super::{Counts, Decision, Estimator, Interval, Mean, Statement, Test, mean};
+use super::{Counts, Decision, Estimator, Interval, Mean, Statement, Test, Weights, mean};
 use crate::base::math;
 use crate::base::special::normal_quantile;
 
@@ -43,6 +43,10 @@ any_rule! {
 }
 
 impl Test for AnyTest {
+    fn weights(&self, counts: Counts) -> Option<Weights> {
+        self.inner().weights(counts)
+    }
+
     fn certifies(&self, decision: Decision) -> Statement {
         self.inner().certifies(decision)
     }

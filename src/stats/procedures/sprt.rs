@@ -5,7 +5,7 @@
 
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, region};
-use crate::stats::{Claim, Counts, Decision, Rule, Sequential, Statement, Test};
+use crate::stats::{Claim, Counts, Decision, Rule, Sequential, Statement, Test, Weight, Weights};
 
 /// Thresholds are widened by this much, against rounding.
 pub(super) const SLACK: f64 = 1e-9;
@@ -45,14 +45,21 @@ impl Sprt {
     }
 }
 
+impl Sprt {
+    /// The log likelihood ratio of theta - indifference over theta + indifference, from whole numbers each time: no drift,
+    /// and the same whatever the order.
+    #[inline]
+    fn ratio(&self, counts: Counts) -> f64 {
+        counts.successes as f64 * self.per_success + counts.failures as f64 * self.per_failure
+    }
+}
+
 impl Rule for Sprt {
     type Answer = Option<Decision>;
 
     #[inline]
     fn look(&mut self, counts: Counts, _: bool) -> Option<Decision> {
-        // The log likelihood ratio of theta - indifference over theta + indifference, from whole numbers each time: no
-        // drift, and the same whatever the order.
-        let ratio = counts.successes as f64 * self.per_success + counts.failures as f64 * self.per_failure;
+        let ratio = self.ratio(counts);
         if ratio >= self.say_below {
             Some(Decision::Below)
         } else if ratio <= self.say_above {
@@ -64,6 +71,14 @@ impl Rule for Sprt {
 }
 
 impl Test for Sprt {
+    fn weights(&self, counts: Counts) -> Option<Weights> {
+        let ratio = self.ratio(counts);
+        Some([
+            Weight { log: -ratio, threshold: -self.say_above },
+            Weight { log: ratio, threshold: self.say_below },
+        ])
+    }
+
     fn certifies(&self, decision: Decision) -> Statement {
         region_statement(decision, (self.low, self.high), self.alpha, self.beta)
     }

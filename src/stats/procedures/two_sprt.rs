@@ -6,7 +6,7 @@
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range, region};
 use crate::stats::sprt::{SLACK, region_statement};
-use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test};
+use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, Weight, Weights};
 
 /// P >= theta + indifference against P <= theta - indifference, with a closed region.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,15 +63,24 @@ impl TwoSprt {
     }
 }
 
+impl TwoSprt {
+    /// The log likelihood ratios of theta over the low and over the high end.
+    #[inline]
+    fn ratios(&self, counts: Counts) -> [f64; 2] {
+        let (s, f) = (counts.successes as f64, counts.failures as f64);
+        [self.over_low, self.over_high].map(|(success, failure)| s * success + f * failure)
+    }
+}
+
 impl Rule for TwoSprt {
     type Answer = Option<Decision>;
 
     #[inline]
     fn look(&mut self, counts: Counts, _: bool) -> Option<Decision> {
-        let (s, f) = (counts.successes as f64, counts.failures as f64);
-        if s * self.over_high.0 + f * self.over_high.1 >= self.thresholds.0 {
+        let [above, below] = self.ratios(counts);
+        if below >= self.thresholds.0 {
             Some(Decision::Below)
-        } else if s * self.over_low.0 + f * self.over_low.1 >= self.thresholds.1 {
+        } else if above >= self.thresholds.1 {
             Some(Decision::Above)
         } else {
             None
@@ -84,6 +93,14 @@ impl Rule for TwoSprt {
 }
 
 impl Test for TwoSprt {
+    fn weights(&self, counts: Counts) -> Option<Weights> {
+        let [above, below] = self.ratios(counts);
+        Some([
+            Weight { log: above, threshold: self.thresholds.1 },
+            Weight { log: below, threshold: self.thresholds.0 },
+        ])
+    }
+
     fn certifies(&self, decision: Decision) -> Statement {
         region_statement(decision, (self.low, self.high), self.alpha, self.beta)
     }

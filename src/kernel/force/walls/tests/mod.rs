@@ -81,7 +81,12 @@ fn scene() -> impl Strategy<Value = Vec<Barrier>> {
     let off = prop_oneof![Just(Vec2::zeros()), off];
     let knot = (0..3, 0..3).prop_map(|(x, y)| p(f64::from(x), f64::from(y)));
     let place = (knot, off).prop_map(|(knot, off)| knot + off);
-    let chain = prop::collection::vec(place.clone(), 2..5).prop_map(|points| wall(&points));
+    // Walls of scenarios have no pieces without a length.
+    let chain =
+        prop::collection::vec(place.clone(), 2..5).prop_filter_map("a wall has a length", |mut points| {
+            points.dedup();
+            (points.len() > 1).then(|| wall(&points))
+        });
     let solid = (place, 0.2..1.1, 0.0..1.5, 0..3, any::<bool>()).prop_map(|(low, size, turn, form, back)| {
         let place = |&(x, y): &(f64, f64)| low + rotated(p(x * size, y), turn);
         let ring = |corners: &[(f64, f64)]| {

@@ -1,0 +1,67 @@
+//! Figures for papers and for pages: each is drawn from the JSON of results as SVG, the same bytes everywhere.
+
+mod answer;
+mod calibration;
+mod distribution;
+mod evidence;
+mod frame;
+mod ranking;
+mod sweep;
+
+use serde_json::Value;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// Results over a swept parameter.
+    Sweep,
+    /// Options of a ranking.
+    Ranking,
+    /// The distribution function of a metric.
+    Distribution,
+    /// How evidence grew.
+    Evidence,
+    /// Predicted probabilities against what happened.
+    Calibration,
+}
+
+/// Why a figure cannot be drawn, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flaw {
+    /// What is wrong.
+    pub message: String,
+    /// What to write.
+    pub hint: String,
+}
+
+impl Flaw {
+    fn new(message: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self { message: message.into(), hint: hint.into() }
+    }
+}
+
+/// The figure of what a file says; of several queries that could be drawn `only` names one.
+///
+/// # Errors
+/// The file has another schema, or not what the figure needs.
+pub fn draw(figure: Figure, file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+    match figure {
+        Figure::Sweep => sweep::draw(file, only),
+        Figure::Ranking => ranking::draw(file, only),
+        Figure::Distribution => distribution::draw(file, only),
+        Figure::Evidence => evidence::draw(file, only),
+        Figure::Calibration => calibration::draw(file, only),
+    }
+}
+
+/// The distribution function and the evidence of a result, for its part of a page; empty if it has neither.
+pub(super) fn of_result(result: &Value) -> String {
+    let frames: Vec<_> = distribution::frame(result).into_iter().chain(evidence::frames(result)).collect();
+    if frames.is_empty() {
+        return String::new();
+    }
+    frame::picture(result["query"].as_str().unwrap_or_default(), frames)
+}
+
+#[cfg(test)]
+mod tests;
