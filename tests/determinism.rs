@@ -120,6 +120,7 @@ fn call() -> Call<'static> {
     Call {
         branch: 0,
         explains: true,
+        shows_evidence: false,
         seed: 11,
         line: CommandLine {
             scenario: "a.scn".to_owned(),

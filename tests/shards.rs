@@ -38,6 +38,7 @@ fn call() -> Call<'static> {
     Call {
         branch: 0,
         explains: false,
+        shows_evidence: false,
         seed: 5,
         line: CommandLine { scenario: "a.scn".to_owned(), ..CommandLine::default() },
         only: Vec::new(),
