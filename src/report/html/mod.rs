@@ -1,6 +1,8 @@
 //! A report as one HTML page, with nothing beside it: verdicts first, then a player of traces, then the texts.
 
+mod axes;
 mod chart;
+mod crowd;
 mod highlight;
 mod histogram;
 mod player;
@@ -13,6 +15,7 @@ use crate::engine::outcome::{CallResult, QueryResult, Witness};
 use crate::engine::traces::Traces;
 use crate::syntax::source::Source;
 use askama::Template;
+use crowd::Crowd;
 use player::Player;
 use section::Section;
 
@@ -57,6 +60,8 @@ struct Html {
     interrupted: bool,
     failure: Option<String>,
     player: Option<Player>,
+    crowds: Vec<Crowd>,
+    crowds_note: String,
     texts: Vec<(String, String)>,
     replay: String,
 }
@@ -69,6 +74,7 @@ pub fn render(run: &CallResult) -> String {
 /// A page.
 pub fn page(page: Page<'_>) -> String {
     let Page { run, sources, traces } = page;
+    let (crowds, crowds_note) = crowd::crowds(&run, &traces.list);
     let player = Player::of(&run, traces);
     let played = |place: usize, witness: &Witness| player.as_ref()?.number(place, witness);
     let numbered: Vec<(usize, &QueryResult)> = {
@@ -104,6 +110,8 @@ pub fn page(page: Page<'_>) -> String {
         texts: texts.collect(),
         replay: run.replay.clone(),
         player,
+        crowds,
+        crowds_note,
     };
     // A template writes to a string, which does not fail.
     html.render().unwrap_or_else(|error| error.to_string())
