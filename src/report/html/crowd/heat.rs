@@ -4,7 +4,7 @@
 //! Seven shades from the map `viridis` stand for values. Their brightness goes one way, so that they can be told apart in
 //! grey and by those who do not see some colours; the brightest is nearest to the paper.
 
-use super::Figure;
+use super::figure::Figure;
 use super::moments::{Moment, place};
 use super::plan::Plan;
 use crate::base::geometry::{Bounds, Vec2};
@@ -75,7 +75,6 @@ impl Grid {
                     if to.x - at.x > reach {
                         break;
                     }
-                    // Positions are exact to half a millimetre.
                     if (to - at).norm() <= f64::from(radius + other_radius) / 1000.0 {
                         (touches[k], touches[other]) = (true, true);
                     }
@@ -91,7 +90,7 @@ impl Grid {
     }
 }
 
-/// The maps of some traces of one scene within some bounds; none of contact where nobody touches.
+/// The maps of some traces of one scene; none of contact where nobody touches, and of recordings, which have no bodies.
 pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec<Figure> {
     let mut grid = Grid::over(plan.walked());
     traces.iter().for_each(|trace| grid.add(&trace.motion));
@@ -100,6 +99,9 @@ pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec
             cell.density += 1.0 / area;
             cell.agents += 1.0;
         }
+    }
+    if traces.iter().any(|trace| trace.recording.is_some()) {
+        grid.cells.iter_mut().for_each(|cell| cell.touching = 0.0);
     }
     let time: f64 = traces.iter().map(|trace| trace.motion.frames as f64 * trace.motion.spacing).sum();
     let scale = 1.0 / (grid.side * grid.side * time);

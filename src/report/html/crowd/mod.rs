@@ -1,6 +1,7 @@
 //! What a page shows of crowds, from the traces that are kept for its player: heat maps, N(t) through lines, speed against
 //! density. All are drawn when the page is made.
 
+mod figure;
 mod heat;
 mod moments;
 mod passage;
@@ -13,6 +14,7 @@ use crate::engine::traces::Trace;
 use crate::kernel::Voronoi;
 use crate::report::number::{counted, duration};
 use crate::report::phrase::settings;
+use figure::Figure;
 use plan::Plan;
 use std::sync::Arc;
 
@@ -21,8 +23,6 @@ const CROWD: usize = 8;
 /// So many scenes of a sweep, and so many lines of a scene, are shown.
 const MOST_SCENES: usize = 2;
 const MOST_LINES: usize = 8;
-/// Letters of a name.
-const MOST_LETTERS: usize = 60;
 
 /// The figures of one scene.
 #[derive(Clone, Debug, Default)]
@@ -34,27 +34,11 @@ pub(super) struct Crowd {
     pub(super) figures: Vec<Figure>,
 }
 
-/// A drawing and what it shows.
-#[derive(Clone, Debug)]
-pub(super) struct Figure {
-    pub(super) caption: String,
-    pub(super) svg: String,
-    /// Whether it takes all the width of a page.
-    pub(super) is_wide: bool,
-}
-
-/// A name as it is shown: very long ones are cut.
-fn brief_name(name: &str) -> String {
-    let start: String = name.chars().take(MOST_LETTERS).collect();
-    if start.len() < name.len() { format!("`{start}…`") } else { format!("`{start}`") }
-}
-
 /// The figures of the traces of a run, scene by scene, and what is left out.
 pub(super) fn crowds(run: &CallResult, traces: &[Trace]) -> (Vec<Crowd>, String) {
     let mut scenes: Vec<Vec<&Trace>> = Vec::new();
     for trace in traces {
-        let timed = trace.scenario.clock.step_seconds() > 0.0 && trace.scenario.clock != Clock::Steps;
-        if !timed || trace.motion.tracks.is_empty() {
+        if !matches!(trace.scenario.clock, Clock::Stepped(_)) || trace.motion.tracks.is_empty() {
             continue;
         }
         match scenes.iter_mut().find(|scene| Arc::ptr_eq(&scene[0].scenario, &trace.scenario)) {

@@ -1,7 +1,7 @@
 //! Speed against density: a dot for each second of each trace. The density is that of the area that people occupy: their
 //! number over the area of all their cells.
 
-use super::Figure;
+use super::figure::Figure;
 use super::moments::Moment;
 use crate::base::geometry::Vec2;
 use crate::report::html::axes::Axes;
