@@ -139,12 +139,12 @@ class Drawing {
     pen.lineJoin = 'round';
     this.scene(scene);
     const present = trace.tracks.filter((track) => placeAt(track, frame));
-    const groups = new Map(scene.groups.flatMap((group, k) => group.members.map((id) => [id, k])));
+    const groups = groupsAt(scene, trace, frame);
     const ink = (track) => {
       const group = groups.get(track.agent);
       return group === undefined ? inks.agent : inks.groups[group % inks.groups.length];
     };
-    this.ties(scene, present, frame);
+    this.ties(groups, present, frame);
     this.planned(plansAt(trace, frame), new Set(present.map((track) => track.agent)));
     const many = present.length > MOST_TRAILS;
     for (const track of present) {
@@ -216,11 +216,14 @@ class Drawing {
   }
 
   // Members of a group are tied to their centre.
-  ties(scene, present, frame) {
+  ties(groups, present, frame) {
     const { pen, inks } = this;
-    scene.groups.forEach((group, k) => {
-      const members = new Set(group.members);
-      const places = present.filter((track) => members.has(track.agent)).map((track) => placeAt(track, frame));
+    const met = new Map();
+    for (const track of present) {
+      const group = groups.get(track.agent);
+      if (group !== undefined) met.set(group, [...(met.get(group) || []), placeAt(track, frame)]);
+    }
+    met.forEach((places, k) => {
       if (places.length < 2) return;
       const mean = (axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length;
       const centre = [mean('x'), mean('y')];

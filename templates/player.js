@@ -114,7 +114,7 @@ function play(data) {
     byId('command').textContent = entry.command;
     byId('command').parentElement.hidden = entry.command === '';
     byId('decision').disabled = entry.decided === null;
-    byId('scene').parentElement.hidden = trace.frames === 0 || scene.agents === 0;
+    byId('scene').parentElement.hidden = trace.frames === 0 || scene.agents + trace.tracks.length === 0;
     byId('view').hidden = byId('scene').parentElement.hidden;
     range.max = end();
     cursors = [];

@@ -54,6 +54,16 @@ function plansAt(trace, frame) {
   return plans;
 }
 
+// The number of the group of each agent at a frame, by its number.
+function groupsAt(scene, trace, frame) {
+  const groups = new Map(scene.groups.flatMap((group, k) => group.members.map((id) => [id, k])));
+  for (const [first, agent, group] of trace.memberships) {
+    if (first > frame + 1e-9) break;
+    groups.set(agent, group === null ? undefined : group);
+  }
+  return groups;
+}
+
 // The rectangle around a scene and a trace, m.
 function bounds(scene, trace) {
   const box = { left: Infinity, right: -Infinity, low: Infinity, high: -Infinity };

@@ -61,6 +61,8 @@ pub struct Adviser<'a> {
     last: Option<Last>,
     /// When somebody was last seen, s.
     sighted: Option<f64>,
+    /// The scenario of the last cycle that compiled.
+    scenario: Option<Arc<Scenario>>,
     /// Where the user would walk under the last advice.
     step: Option<Step>,
 }
@@ -96,6 +98,7 @@ impl<'a> Adviser<'a> {
             cycle: 0,
             last: None,
             sighted: None,
+            scenario: None,
             step: None,
             options,
         }
@@ -104,6 +107,11 @@ impl<'a> Adviser<'a> {
     /// The id of the user.
     pub fn user(&self) -> u32 {
         self.options.user.unwrap_or(self.role.person)
+    }
+
+    /// The scenario with the people of the last cycle that compiled.
+    pub fn scenario(&self) -> Option<&Scenario> {
+        self.scenario.as_deref()
     }
 
     /// Continues the traces with a cycle for which no advice is wanted.
@@ -242,6 +250,7 @@ impl<'a> Adviser<'a> {
             }
             _ => return Err(errors),
         };
+        self.scenario = study.worlds.get(study.base).map(|world| Arc::clone(&world.scenario));
         let taken: Vec<usize> = if self.role.is_group { members.clone() } else { vec![user] };
         let middle =
             taken.iter().map(|k| all[*k].sighting.position).sum::<Vec2>() / taken.len().max(1) as f64;

@@ -277,7 +277,8 @@ impl Reporter<'_> {
             }
         }
         let Some(path) = &self.outputs.page else { return exit };
-        exit.worse(page::write(path, Page { run, sources: self.sources, traces }, self.colors))
+        let page = Page { run, sources: self.sources, traces, ..Page::default() };
+        exit.worse(page::write(path, page, self.colors))
     }
 
     /// Prints the results of a run.

@@ -151,10 +151,10 @@ fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
     Names { scenario: &model.scenario, properties, settings: &model.set, velocity: model.velocity }
 }
 
-/// Reads and parses what a call names.
-pub(super) fn parse(model: &Model, properties: &[String]) -> Parsed {
+/// Reads and parses what a call names; also the files that were opened, where they were found.
+pub(super) fn parse(model: &Model, properties: &[String]) -> (Parsed, Vec<PathBuf>) {
     let mut disk = Disk { model, paths: Vec::new() };
-    read_all(names(model, properties), &mut disk)
+    (read_all(names(model, properties), &mut disk), disk.paths)
 }
 
 /// Reads, parses and compiles what a call names.

@@ -1,5 +1,6 @@
 //! Files that are written: as a whole or not at all, and never over a file that the call reads.
 
+use super::complaint;
 use super::inputs::STDIN;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -90,6 +91,19 @@ pub(super) fn guard(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), Dia
     };
     let title = format!("the output `{}` would overwrite {input}", output.display());
     Err(Diagnostic::placeless(Code::E0920, title).hint("write to another file"))
+}
+
+/// The same for several files, which are to be different ones.
+pub(super) fn guard_all(outputs: &[Option<&Path>], inputs: &[PathBuf]) -> Result<(), Diagnostic> {
+    let outputs: Vec<&Path> = outputs.iter().copied().flatten().collect();
+    for (at, file) in outputs.iter().enumerate() {
+        if outputs[..at].iter().any(|other| other == file || is_same(other, file)) {
+            let title = format!("two results are to be written to `{}`", file.display());
+            return Err(complaint::argument(title, "write each of them to a file of its own"));
+        }
+        guard(Some(file), inputs)?;
+    }
+    Ok(())
 }
 
 /// Whether two names stand for one file.

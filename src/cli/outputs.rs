@@ -38,14 +38,9 @@ impl Outputs {
         }
         let files = chosen.iter().filter_map(|one| Some((one.format.of(), one.file.clone()?)));
         let files: Vec<_> = files.collect();
-        let names: Vec<&Path> = files.iter().map(|(_, file)| file.as_path()).chain(page).collect();
-        for (at, file) in names.iter().enumerate() {
-            if names[..at].iter().any(|other| other == file || output::is_same(other, file)) {
-                let title = format!("two results are to be written to `{}`", file.display());
-                return Err(complaint::argument(title, "write each of them to a file of its own"));
-            }
-            output::guard(Some(file), inputs)?;
-        }
+        let names: Vec<Option<&Path>> =
+            files.iter().map(|(_, file)| Some(file.as_path())).chain([page]).collect();
+        output::guard_all(&names, inputs)?;
         Ok(Self { screen, files, page: page.map(Path::to_owned) })
     }
 }

@@ -87,6 +87,6 @@ impl Trials<'_> {
             replay,
             ..CallResult::default()
         };
-        exit.worse(write(path, Page { run, sources, traces }, colors))
+        exit.worse(write(path, Page { run, sources, traces, ..Page::default() }, colors))
     }
 }

@@ -30,9 +30,10 @@ pub mod start;
 pub mod state;
 mod vector;
 
-pub use code::{Code, Readings};
+pub use code::{Code, Readings, Voronoi};
 pub use dynamics::{Scratch, jump, refresh, step};
 pub use near::Close;
+pub use passing::is_crossed;
 pub use program::Program;
 pub use run::{Address, End, Run};
 pub use state::{Layout, Slot, State};

@@ -85,7 +85,7 @@ fn cross_line(
 }
 
 /// Whether a step crosses a line.
-fn is_crossed(line: &Segment, from: Vec2, to: Vec2) -> bool {
+pub fn is_crossed(line: &Segment, from: Vec2, to: Vec2) -> bool {
     let meets = line.distance(from) < ON_LINE || line.meets(&Segment::new(from, to));
     meets && line.distance(to) >= ON_LINE
 }

@@ -5,6 +5,7 @@
 //! interval, all counts, why sampling stopped, and the command that gives the result again.
 
 pub mod advice;
+pub mod advised;
 pub mod behaviours;
 pub mod brief;
 pub mod csv;

@@ -3,6 +3,7 @@
 use crate::cli::values::{Model, parse_count, parse_duration, parse_moment, parse_velocity};
 use crate::data::tracks::Velocity;
 use clap::Args;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// `smc advise`
@@ -32,6 +33,9 @@ pub(in crate::cli) struct AdviseCommand {
     /// Let the user walk as advised instead of as recorded, and compare both at the end.
     #[arg(long, requires = "replay")]
     pub(in crate::cli) follow: bool,
+    /// Also write a self-contained HTML page that plays the recording, with the advice of each cycle.
+    #[arg(long, value_name = "FILE.html", requires = "replay")]
+    pub(in crate::cli) report: Option<PathBuf>,
     /// Id of the user, instead of the id in the model.
     #[arg(long, value_name = "ID")]
     pub(in crate::cli) user: Option<u32>,

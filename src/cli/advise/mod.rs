@@ -8,14 +8,18 @@ pub(super) use arguments::AdviseCommand;
 
 use super::complaint;
 use super::inputs;
+use super::output;
+use super::page;
 use super::terminal::{Colors, print_to_reader, say};
 use crate::advise::{Adviser, Advising, role};
 use crate::data::tracks::{Batch, Velocity};
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::{Budget, Fault, Threads};
 use crate::library;
+use crate::model::Scene;
 use crate::report::ExitCode as Exit;
 use crate::report::advice;
+use crate::report::advised::{Advised, to_page};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::time::{Duration, Instant};
 
@@ -24,7 +28,7 @@ const RESERVE: Duration = Duration::from_millis(2);
 
 /// Runs the command.
 pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
-    let parsed = inputs::parse(&arguments.model, &arguments.properties);
+    let (parsed, paths) = inputs::parse(&arguments.model, &arguments.properties);
     let refuse = |errors: &[Diagnostic]| {
         complaint::tell_all(errors, &parsed.inputs.sources, colors);
         Exit::Wrong
@@ -32,6 +36,9 @@ pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
     complaint::diagnose(&parsed.inputs, colors);
     if parsed.inputs.diagnostics.iter().any(|one| one.severity == Severity::Error) {
         return Exit::Wrong;
+    }
+    if let Err(error) = output::guard(arguments.report.as_deref(), &paths) {
+        return refuse(&[error]);
     }
     let role = match role(&parsed.scenario) {
         Ok(role) => role,
@@ -55,15 +62,26 @@ pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
         only: arguments.only.clone(),
     };
     let adviser = Adviser::new(parsed.input(), role, options);
-    let mut caller = Caller { arguments, adviser, threads };
+    let mut caller = Caller { arguments, adviser, threads, shown: Advised::default() };
     let done = match recording {
         Some(recording) => replay::run(&mut caller, &recording),
         None => stream::run(&mut caller),
     };
-    match done {
+    let exit = match done {
         Ok(()) => Exit::Success,
         Err(errors) => refuse(&errors),
-    }
+    };
+    let Some(path) = &arguments.report else { return exit };
+    let scenario = caller.adviser.scenario();
+    let title = scenario.map(|scenario| scenario.title.clone()).filter(|title| !title.is_empty());
+    let advised = Advised {
+        title: title.unwrap_or_else(|| arguments.model.scenario.clone()),
+        scene: scenario.map_or_else(Scene::default, |scenario| scenario.scene.clone()),
+        seed: arguments.seed,
+        user: caller.adviser.user(),
+        ..caller.shown
+    };
+    exit.worse(page::write(path, to_page(advised, &parsed.inputs.sources), colors))
 }
 
 /// What answers batches.
@@ -71,6 +89,8 @@ struct Caller<'a> {
     arguments: &'a AdviseCommand,
     adviser: Adviser<'a>,
     threads: Threads,
+    /// What the page of the call shows; gathered only for one.
+    shown: Advised,
 }
 
 impl Caller<'_> {
@@ -84,6 +104,9 @@ impl Caller<'_> {
         let mut found = self.adviser.advise(batches, &self.threads, &budget)?;
         found.notes.splice(0..0, std::mem::take(notes));
         let line = advice::line(&found, self.arguments.velocity, started.elapsed().as_secs_f64() * 1e3);
+        if self.arguments.report.is_some() {
+            self.shown.cycles.push(found);
+        }
         print_to_reader(&line).map_err(|reason| vec![complaint::output(reason)])
     }
 

@@ -108,13 +108,19 @@ pub(super) fn run(caller: &mut Caller<'_>, batches: &[Batch]) -> Result<(), Vec<
             advised.at(cycle, user, place);
             recorded.at(cycle, user, own);
         }
+        if arguments.report.is_some() {
+            caller.shown.batches.extend_from_slice(cycle);
+        }
         before = Some(batch.time);
         if !caller.answer(&shown, &mut notes)? {
             return Ok(());
         }
     }
     if arguments.follow {
-        let line = advice::end(&advised.walked(), &recorded.walked());
+        let [as_advised, as_recorded] = [advised.walked(), recorded.walked()];
+        let line = advice::end(&as_advised, &as_recorded);
+        caller.shown.end = Some([as_advised, as_recorded]);
+        caller.shown.followed = advised.points;
         print_to_reader(&line).map_err(|reason| vec![complaint::output(reason)])?;
     }
     Ok(())

@@ -70,6 +70,9 @@ pub(in crate::cli) struct InferCommand {
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Also write a self-contained HTML page that plays the traces and groups.
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) report: Option<PathBuf>,
 }
 
 /// `--padding`

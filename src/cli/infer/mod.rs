@@ -8,12 +8,13 @@ pub(super) use arguments::InferCommand;
 use super::complaint;
 use super::inputs;
 use super::output;
+use super::page;
 use super::terminal::{Colors, print};
 use crate::base::random::TrialKey;
 use crate::data::tracks::{Batch, Format, LineError, Reading, Velocity, read_groups};
 use crate::perception::{Clustering, Inferring, Padding, Tracking, infer};
 use crate::report::ExitCode as Exit;
-use crate::report::infer::{InferredFile, to_csv, to_json, to_svg};
+use crate::report::infer::{InferredFile, to_csv, to_json, to_page, to_svg};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use arguments::{InferFormat, PaddingRule};
@@ -26,7 +27,7 @@ const SHOWN: usize = 10;
 /// Runs the command.
 pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
     match answer(arguments, colors) {
-        Ok(()) => Exit::Success,
+        Ok(exit) => exit,
         Err(errors) => {
             complaint::tell_all(&errors, &[], colors);
             Exit::Wrong
@@ -34,7 +35,7 @@ pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
     }
 }
 
-fn answer(arguments: &InferCommand, colors: Colors) -> Result<(), Vec<Diagnostic>> {
+fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
     let positive = [arguments.projection, arguments.threshold, arguments.cohesion];
     let divides = arguments.discount.iter().chain(&positive);
@@ -50,9 +51,9 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<(), Vec<Diagnostic
     if named.into_iter().flatten().filter(|name| *name == "-").count() > 1 {
         return Err(one(complaint::input("standard input can be read only once")));
     }
-    let ChosenMotion { mut motion, kind, paths } = motion::chosen(arguments, colors)?;
+    let ChosenMotion { mut motion, kind, scene, sources, paths } = motion::chosen(arguments, colors)?;
     let files: Vec<PathBuf> = named.into_iter().flatten().map(PathBuf::from).chain(paths).collect();
-    output::guard(arguments.output.as_deref(), &files).map_err(one)?;
+    output::guard_all(&[arguments.output.as_deref(), arguments.report.as_deref()], &files).map_err(one)?;
     let bytes = inputs::read(&arguments.tracks).map_err(|reason| one(complaint::input(reason)))?;
     let Some(format) = arguments.input.or_else(|| Format::of(&bytes)) else {
         let said = format!("`{}` is in no known format", inputs::shown(&arguments.tracks));
@@ -111,12 +112,15 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<(), Vec<Diagnostic
         InferFormat::Csv => to_csv(&inference),
         InferFormat::Svg => to_svg(&report),
     };
-    match &arguments.output {
+    let written = match &arguments.output {
         Some(path) => output::write(path, |out| out.write_all(text.as_bytes())).map_err(|error| {
             one(complaint::output(format!("`{}` cannot be written: {error}", path.display())))
         }),
         None => print(&text).map_err(|reason| one(complaint::output(reason))),
-    }
+    };
+    written?;
+    let Some(path) = &arguments.report else { return Ok(Exit::Success) };
+    Ok(page::write(path, to_page(&report, scene, &sources), colors))
 }
 
 /// Leaves the batches between two times.

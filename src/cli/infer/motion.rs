@@ -8,9 +8,10 @@ use crate::cli::values::Model;
 use crate::compile::nearest::nearest;
 use crate::compile::presets::PRESETS;
 use crate::compile::study::World;
-use crate::model::Barrier;
+use crate::model::{Barrier, Scene};
 use crate::perception::{ConstantVelocity, Motion, SocialForce, Standing};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Source;
 use std::path::PathBuf;
 
 /// The preset of people without `--kind`.
@@ -21,7 +22,10 @@ pub(super) struct ChosenMotion {
     pub(super) motion: Box<dyn Motion>,
     /// The preset or kind of people, if it matters.
     pub(super) kind: Option<String>,
-    /// The files that were read for it.
+    /// The scene of `--scene`.
+    pub(super) scene: Scene,
+    /// The texts and files that were read for it.
+    pub(super) sources: Vec<Source>,
     pub(super) paths: Vec<PathBuf>,
 }
 
@@ -31,7 +35,14 @@ pub(super) struct ChosenMotion {
 /// An option that does not fit, or an unknown kind. What is wrong with the scene is written at once, with its text, and
 /// leaves no error to write.
 pub(super) fn chosen(arguments: &InferCommand, colors: Colors) -> Result<ChosenMotion, Vec<Diagnostic>> {
-    let plain = |motion| Ok(ChosenMotion { motion, kind: None, paths: Vec::new() });
+    let without_scene = |motion, kind| ChosenMotion {
+        motion,
+        kind,
+        scene: Scene::default(),
+        sources: Vec::new(),
+        paths: Vec::new(),
+    };
+    let plain = |motion| Ok(without_scene(motion, None));
     if arguments.motion != MotionModel::SocialForce {
         let given = [("--kind", &arguments.kind), ("--scene", &arguments.scene)];
         if let Some((option, _)) = given.iter().find(|(_, value)| value.is_some()) {
@@ -42,24 +53,34 @@ pub(super) fn chosen(arguments: &InferCommand, colors: Colors) -> Result<ChosenM
     match arguments.motion {
         MotionModel::Constant => plain(Box::new(ConstantVelocity)),
         MotionModel::Standing => plain(Box::new(Standing)),
-        MotionModel::SocialForce => social_force(arguments, colors),
+        MotionModel::SocialForce => {
+            let kind = arguments.kind.as_deref().unwrap_or(PRESET);
+            if let Some(scenario) = &arguments.scene {
+                return in_scene(arguments, (scenario, kind), colors);
+            }
+            let motion = of_kind(kind, None, Vec::new()).map_err(|error| vec![error])?;
+            Ok(without_scene(motion, Some(kind.to_owned())))
+        }
     }
 }
 
-fn social_force(arguments: &InferCommand, colors: Colors) -> Result<ChosenMotion, Vec<Diagnostic>> {
-    let kind = arguments.kind.as_deref().unwrap_or(PRESET);
-    let Some(scenario) = &arguments.scene else {
-        let motion = of_kind(kind, None, Vec::new()).map_err(|error| vec![error])?;
-        return Ok(ChosenMotion { motion, kind: Some(kind.to_owned()), paths: Vec::new() });
+fn in_scene(
+    arguments: &InferCommand,
+    (scenario, kind): (&str, &str),
+    colors: Colors,
+) -> Result<ChosenMotion, Vec<Diagnostic>> {
+    let model = Model {
+        scenario: scenario.to_owned(),
+        set: Vec::new(),
+        data: arguments.data.clone(),
+        velocity: None,
     };
-    let model =
-        Model { scenario: scenario.clone(), set: Vec::new(), data: arguments.data.clone(), velocity: None };
     let inputs::Loaded { inputs, paths, .. } = inputs::load(&model, &[]);
     complaint::diagnose(&inputs, colors);
     let world = inputs.study.as_ref().and_then(|study| study.worlds.get(study.base)).ok_or_else(Vec::new)?;
-    let motion =
-        of_kind(kind, Some(world), world.scenario.scene.barriers.clone()).map_err(|error| vec![error])?;
-    Ok(ChosenMotion { motion, kind: Some(kind.to_owned()), paths })
+    let scene = world.scenario.scene.clone();
+    let motion = of_kind(kind, Some(world), scene.barriers.clone()).map_err(|error| vec![error])?;
+    Ok(ChosenMotion { motion, kind: Some(kind.to_owned()), scene, sources: inputs.sources, paths })
 }
 
 /// People of a kind of a scene, or else with the parameters of a preset.

@@ -21,7 +21,6 @@ use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::Source;
 use arguments::Replayed;
-use std::path::PathBuf;
 
 /// What a call is about.
 struct Call {
@@ -43,16 +42,13 @@ fn run(
         complaint::tell_all(errors, sources, colors);
         Exit::Wrong
     };
-    let parsed = inputs::parse(&replayed.model, &replayed.properties);
+    let (parsed, paths) = inputs::parse(&replayed.model, &replayed.properties);
     complaint::diagnose(&parsed.inputs, colors);
     if parsed.inputs.diagnostics.iter().any(|one| one.severity == Severity::Error) {
         return Exit::Wrong;
     }
     let sources = &parsed.inputs.sources;
-    let read = [&replayed.model.scenario].into_iter().chain(&replayed.properties);
-    if let Err(error) =
-        output::guard(replayed.output.as_deref(), &read.map(PathBuf::from).collect::<Vec<_>>())
-    {
+    if let Err(error) = output::guard(replayed.output.as_deref(), &paths) {
         return refuse(&[error], sources);
     }
     let threads = match Threads::new(replayed.threads) {

@@ -4,10 +4,12 @@
 mod bar;
 mod behind;
 mod motion;
+mod recorded;
 
 pub use bar::Bar;
 pub use behind::FIRST;
-pub use motion::{Millimetres, Motion, PlannedWay, SPACING, Track};
+pub use motion::{Membership, Millimetres, Motion, PlannedWay, SPACING, Track};
+pub use recorded::{Walk, recorded};
 
 use super::budget::Budget;
 use super::call::Call;
@@ -42,6 +44,8 @@ pub struct Trace {
     pub scenario: Arc<Scenario>,
     /// Index of the trial.
     pub trial: u64,
+    /// What it is called where it is no trial but a recording.
+    pub recording: Option<String>,
     /// The move or path that was followed, if one was.
     pub option: Option<String>,
     /// Where the agents were.
@@ -146,7 +150,7 @@ fn trace(
     };
     let shows = pick.reasons.iter().zip(seen).map(one).collect();
     let option = witness::label(prepared, pick.advice);
-    Some(Trace { scenario: scenario.clone(), trial: pick.trial, option, motion, end, shows })
+    Some(Trace { scenario: scenario.clone(), trial: pick.trial, recording: None, option, motion, end, shows })
 }
 
 /// What was seen of a trial for a reason.
@@ -293,5 +297,5 @@ pub fn simulated(
     let end = scenario.clock.seconds(if is_jumps { last } else { Tick(run.state().ticks[0]) });
     let option = address.advice.and_then(|advice| scenario.move_name(advice));
     let (scenario, trial) = (scenario.clone(), address.key.index);
-    Ok(Trace { scenario, trial, option, motion, end, shows: Vec::new() })
+    Ok(Trace { scenario, trial, recording: None, option, motion, end, shows: Vec::new() })
 }

@@ -29,6 +29,8 @@ pub struct Motion {
     pub tracks: Vec<Track>,
     /// What agents planned, in the order of time.
     pub plans: Vec<PlannedWay>,
+    /// Groups that change, in the order of time.
+    pub memberships: Vec<Membership>,
     /// Ticks between two frames.
     every: u64,
     /// The track that goes on, and the number of the person on the place, agent by agent.
@@ -65,7 +67,18 @@ pub struct PlannedWay {
     pub points: Vec<Millimetres>,
 }
 
-fn millimetres(place: Vec2) -> Millimetres {
+/// A member of a group from a frame on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Membership {
+    /// The first frame.
+    pub first: usize,
+    /// Number of the agent.
+    pub agent: usize,
+    /// Number of the group; in none for `None`.
+    pub group: Option<u64>,
+}
+
+pub(super) fn millimetres(place: Vec2) -> Millimetres {
     [place.x, place.y].map(|part| (part * 1000.0).round() as i32)
 }
 
@@ -83,6 +96,21 @@ impl Motion {
             seen: vec![Plan::Straight; scenario.agents.len()],
             ..Self::default()
         }
+    }
+
+    /// That of a recording, with the time between two frames, s, and their number.
+    pub(super) fn recorded(
+        (spacing, frames): (f64, usize),
+        tracks: Vec<Track>,
+        memberships: Vec<Membership>,
+    ) -> Self {
+        let mut motion = Self { spacing, frames, tracks, memberships, ..Self::default() };
+        motion.count();
+        while motion.numbers > MOST_NUMBERS {
+            motion.halve();
+        }
+        motion.finish();
+        motion
     }
 
     /// The next state, which is kept if its turn has come.
@@ -162,6 +190,9 @@ impl Motion {
         for plan in &mut self.plans {
             plan.first = plan.first.div_ceil(2);
         }
+        for membership in &mut self.memberships {
+            membership.first = membership.first.div_ceil(2);
+        }
         (self.frames, self.every, self.spacing) =
             (self.frames.div_ceil(2), 2 * self.every, 2.0 * self.spacing);
         self.count();
@@ -172,6 +203,7 @@ impl Motion {
         self.tracks.retain(&is_kept);
         let kept: std::collections::BTreeSet<usize> = self.tracks.iter().map(|track| track.agent).collect();
         self.plans.retain(|plan| kept.contains(&plan.agent));
+        self.memberships.retain(|one| kept.contains(&one.agent));
         self.count();
     }
 

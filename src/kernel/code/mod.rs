@@ -34,7 +34,7 @@ use node::{Id, Node};
 use proximity::Proximity;
 use schedule::Schedule;
 use std::sync::Arc;
-use voronoi::Voronoi;
+pub use voronoi::Voronoi;
 
 /// Compiled expressions.
 #[derive(Clone, Debug)]

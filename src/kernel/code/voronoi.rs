@@ -13,9 +13,9 @@ const REACH: f64 = 1.0;
 const SIDES: u32 = 12;
 const ROUND_SIDES: u32 = 32;
 
-/// What is the same in every state.
+/// The cells of people in a scene: what is the same in every state.
 #[derive(Debug)]
-pub(super) struct Voronoi {
+pub struct Voronoi {
     free: Convex,
     round: Convex,
     sight: Sight,
@@ -31,7 +31,8 @@ struct Near {
 }
 
 impl Voronoi {
-    pub(super) fn new(scene: &Scene) -> Self {
+    /// Those of a scene.
+    pub fn new(scene: &Scene) -> Self {
         Self {
             free: Convex::regular(SIDES, REACH),
             round: Convex::regular(ROUND_SIDES, 1.0),
@@ -61,8 +62,31 @@ impl Voronoi {
         let near = |at: Vec2| Near { at, reaches: distance(at) < REACH };
         let mut all: Vec<Near> = people.filter(|p| distance(*p) < 3.0 * REACH).map(near).collect();
         all.sort_by(|a, b| a.at.x.total_cmp(&b.at.x));
-        let (mut cell, mut others) = (Convex::default(), Vec::new());
         let mut sum = 0.0;
+        self.each(&all, |_, one, cell| sum += self.share(cell, region, one.at));
+        sum / region.area()
+    }
+
+    /// The areas of the cells of some people, m², in their order.
+    pub fn areas(&self, people: &[Vec2]) -> Vec<f64> {
+        let mut order: Vec<usize> = (0..people.len()).collect();
+        order.sort_by(|&a, &b| people[a].x.total_cmp(&people[b].x));
+        let all: Vec<Near> = order.iter().map(|&k| Near { at: people[k], reaches: true }).collect();
+        let mut areas = vec![0.0; people.len()];
+        self.each(&all, |k, one, cell| {
+            let barriers = self.barriers(one.at);
+            areas[order[k]] = if barriers.is_empty() {
+                cell.area()
+            } else {
+                clearing(cell, &barriers).iter().map(Convex::area).sum()
+            };
+        });
+        areas
+    }
+
+    /// Hands out the cells of those who reach the region, among people by ascending x.
+    fn each(&self, all: &[Near], mut take: impl FnMut(usize, &Near, &Convex)) {
+        let (mut cell, mut others) = (Convex::default(), Vec::new());
         for (k, one) in all.iter().enumerate().filter(|(_, one)| one.reaches) {
             let (before, after) = (all[..k].iter().rev(), all[k + 1..].iter());
             let is_close = |other: &&Near| (other.at.x - one.at.x).abs() < 2.0 * REACH;
@@ -70,9 +94,8 @@ impl Voronoi {
             others.clear();
             others.extend(ways.map(|other| other.at - one.at).map(|way| (way.norm_squared(), way)));
             self.cell(&mut cell, &mut others);
-            sum += self.share(&cell, region, one.at);
+            take(k, one, &cell);
         }
-        sum / region.area()
     }
 
     /// The cell of somebody at the origin, among others with their squared distances.
@@ -172,13 +195,7 @@ mod tests {
             let barriers = vec![Barrier { name: String::new(), obstacle: Obstacle::Wall(walls) }];
             let voronoi = Voronoi::new(&Scene { barriers, ..Scene::default() });
             let places: Vec<Vec2> = places.into_iter().map(|(x, y)| Vec2::new(x, y)).collect();
-            let mut area = 0.0;
-            let mut cell = Convex::default();
-            for one in &places {
-                let ways = places.iter().map(|other| other - one);
-                voronoi.cell(&mut cell, &mut ways.map(|way| (way.norm_squared(), way)).collect());
-                area += clearing(&cell, &voronoi.barriers(*one)).iter().map(Convex::area).sum::<f64>();
-            }
+            let area: f64 = voronoi.areas(&places).iter().sum();
             prop_assert!((area - 0.4).abs() < 1e-9, "{area}");
         }
     }

@@ -78,6 +78,11 @@ impl Axis {
         Self { low: first * step, high: last * step, ticks }
     }
 
+    /// Its round numbers, ascending.
+    pub(super) fn ticks(&self) -> &[f64] {
+        &self.ticks
+    }
+
     /// Where a number is, as a share of the axis; its ends for what lies outside.
     pub(super) fn share(&self, x: f64) -> f64 {
         ((x - self.low) / (self.high - self.low)).clamp(0.0, 1.0)

@@ -1,6 +1,8 @@
 //! A report as one HTML page, with nothing beside it: verdicts first, then a player of traces, then the texts.
 
+mod axes;
 mod chart;
+mod crowd;
 mod highlight;
 mod histogram;
 mod player;
@@ -13,6 +15,7 @@ use crate::engine::outcome::{CallResult, QueryResult, Witness};
 use crate::engine::traces::Traces;
 use crate::syntax::source::Source;
 use askama::Template;
+use crowd::Crowd;
 use player::Player;
 use section::Section;
 
@@ -28,6 +31,8 @@ const SCRIPT: &str = concat!(
 );
 /// So many numbers of positions fit into a page.
 pub const MOST_NUMBERS: usize = 500_000;
+/// Most rows of a table that are shown.
+const MOST_ROWS: usize = 2000;
 /// Most bytes of a text that are shown.
 const MOST_TEXT: usize = 200_000;
 
@@ -38,8 +43,23 @@ pub struct Page<'a> {
     pub run: CallResult,
     /// The texts of the call.
     pub sources: &'a [Source],
+    /// Tables beside the results.
+    pub tables: Vec<Table>,
     /// Traces for the player.
     pub traces: Traces,
+}
+
+/// A table of texts.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    /// What it shows.
+    pub title: String,
+    /// What is to be said of it; may be empty.
+    pub note: String,
+    /// Heads of the columns.
+    pub columns: Vec<&'static str>,
+    /// The rows, of which the first 2 000 are shown.
+    pub rows: Vec<Vec<String>>,
 }
 
 #[derive(Template)]
@@ -52,11 +72,14 @@ struct Html {
     about: String,
     tally: Vec<(String, &'static str, String)>,
     sections: Vec<Section>,
+    tables: Vec<Table>,
     findings: Vec<(bool, String)>,
     warnings: Vec<String>,
     interrupted: bool,
     failure: Option<String>,
     player: Option<Player>,
+    crowds: Vec<Crowd>,
+    crowds_note: String,
     texts: Vec<(String, String)>,
     replay: String,
 }
@@ -68,7 +91,15 @@ pub fn render(run: &CallResult) -> String {
 
 /// A page.
 pub fn page(page: Page<'_>) -> String {
-    let Page { run, sources, traces } = page;
+    let Page { run, sources, mut tables, traces } = page;
+    for table in &mut tables {
+        let more = table.rows.len().saturating_sub(MOST_ROWS) as u64;
+        if more > 0 {
+            table.note += &format!(" Left out: {}.", counted(more, "row"));
+            table.rows.truncate(MOST_ROWS);
+        }
+    }
+    let (crowds, crowds_note) = crowd::crowds(&run, &traces.list);
     let player = Player::of(&run, traces);
     let played = |place: usize, witness: &Witness| player.as_ref()?.number(place, witness);
     let numbered: Vec<(usize, &QueryResult)> = {
@@ -97,6 +128,7 @@ pub fn page(page: Page<'_>) -> String {
         about,
         tally: tally.map(|(n, word, _)| (n.to_string(), word, word.replace(' ', "-"))).collect(),
         sections,
+        tables,
         findings: run.diagnostics.iter().map(finding).collect(),
         warnings: run.warnings.clone(),
         interrupted: run.interrupted,
@@ -104,6 +136,8 @@ pub fn page(page: Page<'_>) -> String {
         texts: texts.collect(),
         replay: run.replay.clone(),
         player,
+        crowds,
+        crowds_note,
     };
     // A template writes to a string, which does not fail.
     html.render().unwrap_or_else(|error| error.to_string())

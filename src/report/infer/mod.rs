@@ -2,10 +2,12 @@
 
 mod csv;
 mod json;
+mod page;
 mod svg;
 
 pub use csv::to_csv;
 pub use json::to_json;
+pub use page::to_page;
 pub use svg::to_svg;
 
 use crate::data::tracks::Velocity;

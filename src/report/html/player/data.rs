@@ -27,6 +27,8 @@ struct Motion {
     end: f64,
     tracks: Vec<Track>,
     plans: Vec<Plan>,
+    /// Groups that change: the first frame, the agent, the group.
+    memberships: Vec<(usize, usize, Option<u64>)>,
 }
 
 #[derive(Debug, Serialize)]
@@ -134,6 +136,7 @@ fn motion(scene: usize, trace: &Trace) -> Motion {
         end: trace.end,
         tracks: motion.tracks.iter().map(track).collect(),
         plans: motion.plans.iter().map(plan).collect(),
+        memberships: motion.memberships.iter().map(|one| (one.first, one.agent, one.group)).collect(),
     }
 }
 
@@ -155,8 +158,11 @@ fn bare(number: usize, trace: &Trace) -> Entry {
     }
 }
 
-/// `trial 17`, `trial 17, stop`
+/// `trial 17`, `trial 17, stop`, `recording`
 fn named(trace: &Trace) -> String {
+    if let Some(recording) = &trace.recording {
+        return recording.clone();
+    }
     let option = trace.option.as_ref().map_or(String::new(), |option| format!(", {option}"));
     format!("trial {}{option}", count(trace.trial))
 }

@@ -29,7 +29,7 @@ impl Player {
         let Traces { mut list, mut left_out } = traces;
         let mut numbers = 0;
         for trace in &list {
-            numbers = numbers.max(trace.scenario.agents.len());
+            numbers = numbers.max(trace.scenario.agents.len()).max(trace.motion.tracks.len());
         }
         let thinned = thin(&mut list, MOST_BYTES, |list| json(&Data::of(run, list)).len());
         if list.is_empty() {

@@ -1,0 +1,138 @@
+//! A replay with advice as a page: the advice of each cycle, and a player with the people of the recording.
+
+use crate::advise::{Advice, Walked};
+use crate::base::geometry::Vec2;
+use crate::data::tracks::Batch;
+use crate::engine::outcome::{CallResult, Interval};
+use crate::engine::traces::{Traces, Walk, recorded};
+use crate::model::Scene;
+use crate::report::html::{Page, Table};
+use crate::report::number::{count, interval, plain};
+use crate::syntax::source::Source;
+use std::collections::BTreeMap;
+
+/// Whoever is unseen for longer is another walk, s.
+const LONGEST: f64 = 2.0;
+
+/// What a replay gave.
+#[derive(Clone, Debug, Default)]
+pub struct Advised {
+    /// Title of the model, or its file.
+    pub title: String,
+    /// Its walls and regions.
+    pub scene: Scene,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Id of the user.
+    pub user: u32,
+    /// The batches that were answered, as recorded.
+    pub batches: Vec<Batch>,
+    /// The advice of each cycle.
+    pub cycles: Vec<Advice>,
+    /// Where the user walked as advised, at which times; empty where the user walked as recorded.
+    pub followed: Vec<(f64, Vec2)>,
+    /// What the user did as advised and as recorded, where the user followed.
+    pub end: Option<[Walked; 2]>,
+}
+
+/// The page.
+pub fn to_page<'a>(advised: Advised, sources: &'a [Source]) -> Page<'a> {
+    let (walks, unnamed) = walks(&advised);
+    let Advised { title, scene, seed, cycles, end, .. } = advised;
+    let trace = recorded(&title, scene, &walks);
+    let mut tables = vec![cycles_table(&cycles)];
+    tables.extend(end.map(|[advised, recorded]| ends_table(&advised, &recorded)));
+    let mut warnings = Vec::new();
+    if unnamed > 0 {
+        warnings.push(format!("the player leaves out {} observations without an id", count(unnamed)));
+    }
+    Page {
+        run: CallResult {
+            scenario: title,
+            seed,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            warnings,
+            ..CallResult::default()
+        },
+        sources,
+        tables,
+        traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
+    }
+}
+
+/// The people of the recording by their ids, and how many observations have none.
+fn walks(advised: &Advised) -> (Vec<Walk>, u64) {
+    let mut people: BTreeMap<u32, Vec<(f64, Vec2)>> = BTreeMap::new();
+    let mut unnamed = 0;
+    for batch in &advised.batches {
+        for one in &batch.seen {
+            let Some(id) = one.id else {
+                unnamed += 1;
+                continue;
+            };
+            let points = people.entry(id).or_default();
+            // Several sensors may see somebody at one time.
+            if points.last().is_none_or(|(time, _)| *time < batch.time) {
+                points.push((batch.time, one.position));
+            }
+        }
+    }
+    let is_followed = !advised.followed.is_empty();
+    let name = |id: u32| match id == advised.user {
+        true if is_followed => "user as recorded".to_owned(),
+        true => "user".to_owned(),
+        false => format!("person[{id}]"),
+    };
+    let stretches = people.iter().flat_map(|(id, points)| {
+        let parts = points.chunk_by(|a, b| b.0 - a.0 <= LONGEST);
+        parts.map(|points| Walk { name: name(*id), points: points.to_vec(), groups: Vec::new() })
+    });
+    let followed = Walk { name: "user".to_owned(), points: advised.followed.clone(), groups: Vec::new() };
+    (stretches.chain(is_followed.then_some(followed)).collect(), unnamed)
+}
+
+/// Time to a thousandth, without a rounding error at its end.
+fn seconds(time: f64) -> String {
+    plain((time * 1e3).round() / 1e3)
+}
+
+fn cycles_table(cycles: &[Advice]) -> Table {
+    let row = |advice: &Advice| {
+        let [probability, range] = advice.probability.map_or([String::new(), String::new()], |all| {
+            let printed = interval(&Interval { estimate: all[0], low: all[1], high: all[2] }, None);
+            [printed.estimate, printed.interval]
+        });
+        let gap = advice.gap.filter(|gap| gap.is_finite()).map_or(String::new(), |gap| {
+            let certified = if advice.certified { "certified" } else { "not certified" };
+            format!("{}, {certified}", plain((gap * 1e4).round() / 1e4))
+        });
+        vec![
+            seconds(advice.time),
+            advice.status.name().to_owned(),
+            advice.chosen.clone().unwrap_or_default(),
+            probability,
+            range,
+            gap,
+            advice.notes.join("; "),
+        ]
+    };
+    Table {
+        title: "Advice".to_owned(),
+        note: "One row a cycle. The move is at most the gap worse than the best one.".to_owned(),
+        columns: vec!["time (s)", "status", "move", "probability", "interval", "gap", "notes"],
+        rows: cycles.iter().map(row).collect(),
+    }
+}
+
+fn ends_table(advised: &Walked, recorded: &Walked) -> Table {
+    let row = |name: &str, walked: &Walked| {
+        let least = walked.least_distance.map_or(String::new(), seconds);
+        vec![name.to_owned(), least, seconds(walked.time), seconds(walked.length)]
+    };
+    Table {
+        title: "The user".to_owned(),
+        note: String::new(),
+        columns: vec!["walked", "least distance (m)", "time (s)", "length (m)"],
+        rows: vec![row("as advised", advised), row("as recorded", recorded)],
+    }
+}

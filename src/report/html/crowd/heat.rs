@@ -1,0 +1,193 @@
+//! Heat maps: where people were, how densely they stood around each other, and where they touched, on a grid of square
+//! cells.
+//!
+//! Seven shades from the map `viridis` stand for values. Their brightness goes one way, so that they can be told apart in
+//! grey and by those who do not see some colours; the brightest is nearest to the paper.
+
+use super::figure::Figure;
+use super::moments::{Moment, place};
+use super::plan::Plan;
+use crate::base::geometry::{Bounds, Vec2};
+use crate::engine::traces::{Motion, Trace};
+use crate::report::number::{brief, plain};
+use std::fmt::Write as _;
+
+/// Cells of a grid.
+const MOST_CELLS: f64 = 1600.0;
+/// Sides of cells, m; ten times as long after the last.
+const SIDES: [f64; 3] = [0.2, 0.5, 1.0];
+/// Shades of a map.
+const SHADES: usize = 7;
+/// This share of the cells has a shade of its own; the few above have the last one.
+const TYPICAL: f64 = 0.98;
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cell {
+    /// Time of agents in it, and in it while they touch somebody, s.
+    seconds: f64,
+    touching: f64,
+    /// Sum of densities around agents in it, and their number.
+    density: f64,
+    agents: f64,
+}
+
+/// Square cells.
+#[derive(Debug)]
+struct Grid {
+    low: Vec2,
+    side: f64,
+    columns: usize,
+    cells: Vec<Cell>,
+}
+
+impl Grid {
+    /// The finest grid over some bounds.
+    fn over(bounds: &Bounds) -> Self {
+        let sides = (0..9).flat_map(|power| SIDES.map(|side| side * 10.0_f64.powi(power)));
+        let size = |side: f64| {
+            let cells = |low: f64, high: f64| (high / side).floor() - (low / side).floor() + 1.0;
+            [cells(bounds.low.x, bounds.high.x), cells(bounds.low.y, bounds.high.y)]
+        };
+        let fits = |side: &f64| size(*side).iter().product::<f64>() <= MOST_CELLS;
+        let side = sides.clone().find(fits).unwrap_or(f64::INFINITY);
+        let [columns, rows] = size(side).map(|count| count.clamp(1.0, MOST_CELLS) as usize);
+        let low = bounds.low.map(|part| (part / side).floor() * side);
+        Self { low, side, columns, cells: vec![Cell::default(); columns * rows] }
+    }
+
+    fn at(&mut self, place: Vec2) -> Option<&mut Cell> {
+        let [column, row] = [0, 1].map(|axis| ((place[axis] - self.low[axis]) / self.side) as usize);
+        self.cells.get_mut(row * self.columns + column.min(self.columns - 1))
+    }
+
+    /// The agents of each frame of a motion.
+    fn add(&mut self, motion: &Motion) {
+        let widest = motion.tracks.iter().map(|track| track.radius).max().unwrap_or(0);
+        for frame in 0..motion.frames {
+            let here = motion.tracks.iter().filter_map(|track| Some((place(track, frame)?, track.radius)));
+            let mut here: Vec<(Vec2, i32)> = here.collect();
+            here.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+            let mut touches = vec![false; here.len()];
+            for (k, (at, radius)) in here.iter().enumerate() {
+                let reach = f64::from(radius + widest) / 1000.0;
+                for (other, (to, other_radius)) in here.iter().enumerate().skip(k + 1) {
+                    if to.x - at.x > reach {
+                        break;
+                    }
+                    if (to - at).norm() <= f64::from(radius + other_radius) / 1000.0 {
+                        (touches[k], touches[other]) = (true, true);
+                    }
+                }
+            }
+            for ((at, _), touches) in here.iter().zip(touches) {
+                if let Some(cell) = self.at(*at) {
+                    cell.seconds += motion.spacing;
+                    cell.touching += if touches { motion.spacing } else { 0.0 };
+                }
+            }
+        }
+    }
+}
+
+/// The maps of some traces of one scene; none of contact where nobody touches, and of recordings, which have no bodies.
+pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec<Figure> {
+    let mut grid = Grid::over(plan.walked());
+    traces.iter().for_each(|trace| grid.add(&trace.motion));
+    for (at, area) in moments.iter().flat_map(|moment| &moment.people) {
+        if let (Some(cell), true) = (grid.at(*at), *area > 0.0) {
+            cell.density += 1.0 / area;
+            cell.agents += 1.0;
+        }
+    }
+    if traces.iter().any(|trace| trace.recording.is_some()) {
+        grid.cells.iter_mut().for_each(|cell| cell.touching = 0.0);
+    }
+    let time: f64 = traces.iter().map(|trace| trace.motion.frames as f64 * trace.motion.spacing).sum();
+    let scale = 1.0 / (grid.side * grid.side * time);
+    let side = plain(grid.side);
+    let map = |title: &str, unit: &str, said: &str, value: &dyn Fn(&Cell) -> f64| {
+        let svg = drawn(plan, &grid, (title, unit), value)?;
+        Some(Figure { caption: format!("{title}: {said} Cells of {side} m."), svg, is_wide: plan.is_wide() })
+    };
+    let maps = [
+        map(
+            "Presence",
+            "agent-seconds per m² and second",
+            "the time that agents spent in a cell, by its area and the time of all traces.",
+            &|cell| cell.seconds * scale,
+        ),
+        map(
+            "Density",
+            "agents/m²",
+            "the mean of 1 / area of the Voronoi cell of the agents that were there, once a second.",
+            &|cell| if cell.agents > 0.0 { cell.density / cell.agents } else { 0.0 },
+        ),
+        map(
+            "Contact",
+            "share of time in contact",
+            "of the time that agents spent in a cell, the share in which they touched another agent.",
+            &|cell| if cell.seconds > 0.0 { cell.touching / cell.seconds } else { 0.0 },
+        ),
+    ];
+    maps.into_iter().flatten().collect()
+}
+
+/// A round width of a shade, such that all shades reach a number.
+fn width(top: f64) -> f64 {
+    let least = top / SHADES as f64;
+    let text = format!("{least:e}");
+    let power = text.split_once('e').map_or("1e0".to_owned(), |(_, power)| format!("1e{power}"));
+    let power = power.parse::<f64>().unwrap_or(1.0);
+    let round = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0].map(|part| part * power);
+    // A number such as 1.5 is not exact times a power of ten.
+    round.into_iter().find(|width| *width >= least * (1.0 - 1e-9)).unwrap_or(least)
+}
+
+fn drawn(
+    plan: &Plan,
+    grid: &Grid,
+    (title, unit): (&str, &str),
+    value: &dyn Fn(&Cell) -> f64,
+) -> Option<String> {
+    let values: Vec<f64> = grid.cells.iter().map(value).collect();
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
+    sorted.sort_by(f64::total_cmp);
+    let most = *sorted.last()?;
+    let typical = sorted[((sorted.len() - 1) as f64 * TYPICAL) as usize];
+    let width = width(typical);
+    let mut cells = String::new();
+    for (k, value) in values.iter().enumerate().filter(|(_, value)| **value > 0.0) {
+        let (column, row) = (k % grid.columns, k / grid.columns);
+        let shade = ((value / width * (1.0 - 1e-9)) as usize).min(SHADES - 1) + 1;
+        let _ = writeln!(
+            cells,
+            "<rect class=\"h{shade}\" x=\"{column}\" y=\"{row}\" width=\"1\" height=\"1\"><title>{}</title></rect>",
+            brief(*value)
+        );
+    }
+    let mut legend = String::new();
+    for k in 0..=SHADES {
+        let x = f64::from(k as u32) * plan.shade();
+        if k < SHADES {
+            let _ = write!(
+                legend,
+                "<rect class=\"h{}\" x=\"{x:.1}\" y=\"0\" width=\"{:.1}\" height=\"10\"/>",
+                k + 1,
+                plan.shade()
+            );
+        }
+        // Long numbers would touch.
+        if plan.is_wide() || k % 2 == 0 {
+            let _ = write!(
+                legend,
+                "<text class=\"tick\" x=\"{x:.1}\" y=\"22\">{}</text>",
+                plain((width * k as f64 * 1e9).round() / 1e9)
+            );
+        }
+    }
+    let above =
+        if most > SHADES as f64 * width { format!(", at most {}", brief(most)) } else { String::new() };
+    let _ = writeln!(legend, "<text class=\"tick first\" x=\"-10\" y=\"38\">{unit}{above}</text>");
+    Some(plan.finish(title, (grid.low, grid.side), &cells, &legend))
+}

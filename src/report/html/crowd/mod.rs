@@ -1,0 +1,96 @@
+//! What a page shows of crowds, from the traces that are kept for its player: heat maps, N(t) through lines, speed against
+//! density. All are drawn when the page is made.
+
+mod figure;
+mod heat;
+mod moments;
+mod passage;
+mod plan;
+mod speed_density;
+
+use crate::base::tick::Clock;
+use crate::engine::outcome::CallResult;
+use crate::engine::traces::Trace;
+use crate::kernel::Voronoi;
+use crate::report::number::{counted, duration};
+use crate::report::phrase::settings;
+use figure::Figure;
+use plan::Plan;
+use std::sync::Arc;
+
+/// So many agents in a trace are a crowd.
+const CROWD: usize = 8;
+/// So many scenes of a sweep, and so many lines of a scene, are shown.
+const MOST_SCENES: usize = 2;
+const MOST_LINES: usize = 8;
+
+/// The figures of one scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Crowd {
+    /// The values of parameters; empty where there is one scene.
+    pub(super) head: String,
+    /// Which traces they are from, and what is left out.
+    pub(super) note: String,
+    pub(super) figures: Vec<Figure>,
+}
+
+/// The figures of the traces of a run, scene by scene, and what is left out.
+pub(super) fn crowds(run: &CallResult, traces: &[Trace]) -> (Vec<Crowd>, String) {
+    let mut scenes: Vec<Vec<&Trace>> = Vec::new();
+    for trace in traces {
+        if !matches!(trace.scenario.clock, Clock::Stepped(_)) || trace.motion.tracks.is_empty() {
+            continue;
+        }
+        match scenes.iter_mut().find(|scene| Arc::ptr_eq(&scene[0].scenario, &trace.scenario)) {
+            Some(scene) => scene.push(trace),
+            None => scenes.push(vec![trace]),
+        }
+    }
+    scenes.retain(|traces| is_crowd(traces) || !traces[0].scenario.scene.lines.is_empty());
+    let left_out = scenes.len().saturating_sub(MOST_SCENES);
+    let mut shown: Vec<Crowd> =
+        scenes.iter().take(MOST_SCENES).filter_map(|traces| crowd(run, traces)).collect();
+    if scenes.len() == 1 {
+        shown.iter_mut().for_each(|one| one.head.clear());
+    }
+    let left_out = match left_out as u64 {
+        0 => String::new(),
+        scenes => format!("Left out: the figures of {}.", counted(scenes, "scene")),
+    };
+    (shown, left_out)
+}
+
+fn is_crowd(traces: &[&Trace]) -> bool {
+    traces.iter().any(|trace| trace.motion.tracks.len() >= CROWD)
+}
+
+fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
+    let scene = &traces[0].scenario.scene;
+    let plan = Plan::of(scene, traces)?;
+    let mut figures = Vec::new();
+    let lines = scene.lines.iter().take(MOST_LINES).map(|line| passage::figure(line, traces));
+    if is_crowd(traces) {
+        let moments = moments::moments(&Voronoi::new(scene), traces.iter().map(|trace| &trace.motion));
+        figures.extend(heat::figures(&plan, traces, &moments));
+        figures.extend(lines);
+        figures.extend(speed_density::figure(&moments));
+    } else {
+        figures.extend(lines);
+    }
+    let seconds = traces.iter().map(|trace| trace.end).sum();
+    let mut note = format!(
+        "From {} of the player, {} in all.",
+        counted(traces.len() as u64, "trace"),
+        duration(seconds)
+    );
+    let shown = traces.iter().find_map(|trace| trace.shows.first());
+    if shown.is_some() {
+        note += " They were kept for what they show, and are no random sample.";
+    }
+    let more = scene.lines.len().saturating_sub(MOST_LINES);
+    if more > 0 {
+        note += &format!(" Left out: {}.", counted(more as u64, "line"));
+    }
+    let result = shown.and_then(|shown| run.results.get(shown.result));
+    Some(Crowd { head: result.map_or(String::new(), settings), note, figures })
+}
