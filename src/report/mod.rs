@@ -10,6 +10,7 @@ pub mod brief;
 pub mod csv;
 mod escape;
 pub mod evaluate;
+pub mod fit;
 mod exit;
 pub mod forecast;
 pub mod gait;
