@@ -44,6 +44,7 @@ pub fn sample(
     let own = StepColumns::new(prepared, columns).map_err(|_| Fault::Unsuitable)?;
     let watching = Watching {
         columns: own,
+        asks: !columns.is_empty(),
         followed,
         decided: Mask::NONE,
         ways: std::array::from_fn(|_| Vec::new()),
@@ -73,6 +74,8 @@ pub fn sample(
 /// Monitors of columns that go on until the last tick that was asked for.
 struct Watching<'t> {
     columns: StepColumns,
+    /// Whether there is any column.
+    asks: bool,
     followed: Followed<'t>,
     /// Lanes in which all columns are decided.
     decided: Mask,
@@ -107,7 +110,7 @@ impl Monitors for Watching<'_> {
                     )
                 }));
             }
-            if way.len() >= agents.len() * ticks.len() && self.decided.has(lane) {
+            if way.len() >= agents.len() * ticks.len() && (self.decided.has(lane) || !self.asks) {
                 over |= Mask::lane(lane);
             }
         }
