@@ -3,13 +3,16 @@
 //! `cargo run --release --example validate` from the root of the repository. Each test is a scenario and a property file in
 //! `validation/`. The first line of the scenario names the source, the first line of the properties the criterion. Two more
 //! comments may follow there: `// Settings: n = 1, 2` asks for several values of a parameter, `// Trials: 600` is the budget
-//! of a query (120 unless given). An argument, as in `-- 20`, is the largest budget of all.
+//! of a query (120 unless given). A number as argument, as in `-- 20`, is the largest budget of all. Another argument is the
+//! folder of the recordings of ETH/BIWI: then every preset is also compared with people who were recorded.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints")]
 #![allow(clippy::disallowed_methods, reason = "an example opens its own files")]
 
-use smc::compile::presets::PRESETS;
+#[path = "validate/recorded.rs"]
+mod recorded;
 
+use smc::compile::presets::PRESETS;
 use smc::{Draft, Options, Report};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -22,7 +25,9 @@ const NAMED: &str = "preset smc1";
 const TRIALS: u64 = 120;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let most = std::env::args().nth(1).map_or(Ok(u64::MAX), |most| most.parse())?;
+    let (numbers, folders): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|word| word.parse::<u64>().is_ok());
+    let most = numbers.first().map_or(Ok(u64::MAX), |most| most.parse())?;
     let folder = Path::new("validation");
     let names: BTreeSet<String> = fs::read_dir(folder)?
         .filter_map(|entry| {
@@ -30,6 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
         .collect();
     let mut page = fs::read_to_string(folder.join("head.md"))?;
+    page.push_str(&recorded::section(folders.first().map(Path::new), most.min(TRIALS))?);
     for name in &names {
         let scenario = fs::read_to_string(folder.join(format!("{name}.scn")))?;
         let properties = fs::read_to_string(folder.join(format!("{name}.bltl")))?;

@@ -70,6 +70,8 @@ pub enum Purpose {
     Group = 13,
     /// Persons of a resample of the bootstrap.
     Resample = 14,
+    /// Individuals of a search for parameters, and who is held out of it.
+    Search = 15,
     /// Synthetic data and tests.
     Test = 255,
 }

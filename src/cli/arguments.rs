@@ -6,7 +6,7 @@ use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
 use super::plot::PlotCommand;
-use super::replay::{EvaluateCommand, MonitorCommand};
+use super::replay::{EvaluateCommand, FitCommand, MonitorCommand};
 use super::simulate::choice::Keep;
 use super::simulate::format::parse_trace_format;
 use super::values::{
@@ -65,6 +65,8 @@ pub(super) enum Command {
     Monitor(Box<MonitorCommand>),
     /// Compare the predictions of a model with what happened in a recording.
     Evaluate(Box<EvaluateCommand>),
+    /// Fit parameters of a model to a recording.
+    Fit(Box<FitCommand>),
     /// Infer traces and groups from a recording or a table of observations.
     Infer(Box<InferCommand>),
     /// Cut motion capture into steps; learn gaits from them, show, draw and score these.

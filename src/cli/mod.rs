@@ -141,6 +141,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Advise(command) => advise::run(command, colors),
         Command::Monitor(command) => replay::monitor(command, colors),
         Command::Evaluate(command) => replay::evaluate(command, colors),
+        Command::Fit(command) => replay::fit(command, colors),
         Command::Infer(command) => infer::run(command, colors),
         Command::Gait(command) => gait::run(command, colors),
         Command::Walk(command) => walk::run(command, colors),

@@ -70,7 +70,7 @@ fn plot(command: &PlotCommand) -> Result<(), Diagnostic> {
     output::guard(command.output.as_deref(), &[read])?;
     let bytes = inputs::read(&command.results).map_err(complaint::input)?;
     let wrong = |message: String, hint: String| {
-        Diagnostic::placeless(Code::E0713, format!("`{name}` cannot be drawn: {message}")).hint(hint)
+        Diagnostic::placeless(Code::E0714, format!("`{name}` cannot be drawn: {message}")).hint(hint)
     };
     let file: Value = serde_json::from_slice(&bytes).map_err(|error| {
         let hint = "make the file with `smc check … --format json=results.json`";

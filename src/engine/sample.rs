@@ -1,4 +1,4 @@
-//! Trials of a world in which the way of one agent is kept beside what each column comes to.
+//! Trials of a world in which the ways of some agents are kept beside what each column comes to.
 
 use super::batch::{Batch, Monitors};
 use super::budget::Budget;
@@ -16,15 +16,16 @@ use crate::model::AgentId;
 pub struct Sample {
     /// Trial by trial what each column came to.
     pub readings: Vec<Vec<Reading>>,
-    /// Trial by trial the positions at the ticks that were asked for, m; fewer where the trial ended before.
+    /// Trial by trial the positions at the ticks that were asked for, m, of all agents at the first, at the second, and so on;
+    /// fewer where the trial ended before.
     pub paths: Vec<Vec<Vec2>>,
 }
 
-/// Whose way is kept, and at which ticks, ascending.
+/// Whose ways are kept, and at which ticks, ascending.
 #[derive(Clone, Copy, Debug)]
 pub struct Followed<'t> {
     /// Who.
-    pub agent: AgentId,
+    pub agents: &'t [AgentId],
     /// When.
     pub ticks: &'t [u64],
 }
@@ -43,6 +44,7 @@ pub fn sample(
     let own = StepColumns::new(prepared, columns).map_err(|_| Fault::Unsuitable)?;
     let watching = Watching {
         columns: own,
+        asks: !columns.is_empty(),
         followed,
         decided: Mask::NONE,
         ways: std::array::from_fn(|_| Vec::new()),
@@ -72,10 +74,12 @@ pub fn sample(
 /// Monitors of columns that go on until the last tick that was asked for.
 struct Watching<'t> {
     columns: StepColumns,
+    /// Whether there is any column.
+    asks: bool,
     followed: Followed<'t>,
     /// Lanes in which all columns are decided.
     decided: Mask,
-    /// Lane by lane the way so far.
+    /// Lane by lane the ways so far.
     ways: [Vec<Vec2>; LANES],
     paths: Vec<(usize, Vec<Vec2>)>,
 }
@@ -93,16 +97,20 @@ impl Monitors for Watching<'_> {
             self.decided |= self.columns.observe(run, fresh) & run.occupied();
         }
         let mut over = run.ended();
+        let Followed { agents, ticks } = self.followed;
         for lane in run.occupied().iter() {
             let way = &mut self.ways[lane];
-            if self.followed.ticks.get(way.len()) == Some(&state.ticks[lane]) {
-                let slot = state.slot(self.followed.agent.0 as usize, lane);
-                way.push(Vec2::new(
-                    state.motion.x[slot.block].0[slot.lane],
-                    state.motion.y[slot.block].0[slot.lane],
-                ));
+            let seen = way.len() / agents.len().max(1);
+            if ticks.get(seen) == Some(&state.ticks[lane]) {
+                way.extend(agents.iter().map(|agent| {
+                    let slot = state.slot(agent.0 as usize, lane);
+                    Vec2::new(
+                        state.motion.x[slot.block].0[slot.lane],
+                        state.motion.y[slot.block].0[slot.lane],
+                    )
+                }));
             }
-            if way.len() >= self.followed.ticks.len() && self.decided.has(lane) {
+            if way.len() >= agents.len() * ticks.len() && (self.decided.has(lane) || !self.asks) {
                 over |= Mask::lane(lane);
             }
         }

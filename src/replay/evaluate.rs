@@ -7,7 +7,7 @@ use super::course::{Beyond, course};
 use super::displacement::Displacement;
 use super::formulas::targets;
 use super::instants::Instant;
-use super::kinds::{CONSTANT, with_kind};
+use super::kinds::CONSTANT;
 use super::monitor::happened;
 use super::region::{Fit, HORIZONS};
 use super::situation::{Replay, is_of_a_place};
@@ -20,7 +20,6 @@ use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::{AgentId, Parameter};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::SourceId;
 use std::collections::BTreeSet;
 
 /// Displacements are those of so many seconds, or of the horizon if that is shorter.
@@ -100,11 +99,7 @@ pub fn evaluate(
     options: &Evaluating,
     (threads, drivers): (&Threads, &MakeDrivers),
 ) -> Result<Predicted, Vec<Diagnostic>> {
-    let id = SourceId(replay.sources.len() as u16);
-    let (scenario, source) = with_kind(&replay.scenario, kind, id).map_err(|error| vec![error])?;
-    let mut own = replay.clone();
-    own.scenario = scenario;
-    own.sources.extend(source);
+    let own = replay.with_kind(kind)?;
     // Without any random number one trial says all.
     let trials = if kind == CONSTANT { 1 } else { options.trials };
     let numbered: Vec<(u64, Instant)> = (0..).zip(instants.iter().copied()).collect();
@@ -172,7 +167,7 @@ fn predict(
     let horizons = HORIZONS.iter().filter(|time| **time <= last + 1e-9);
     let ticks: BTreeSet<u64> = times.iter().chain(horizons).map(tick).collect();
     let ticks: Vec<u64> = ticks.into_iter().collect();
-    let followed = Followed { agent: AgentId(own as u32), ticks: &ticks };
+    let followed = Followed { agents: &[AgentId(own as u32)], ticks: &ticks };
     let Ok(found) = sample(prepared, columns, series, trials, followed) else {
         return (vec![None; columns.len()], None);
     };

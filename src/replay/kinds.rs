@@ -6,7 +6,7 @@ use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::parse_scenario;
-use crate::syntax::source::{Source, SourceId};
+use crate::syntax::source::{Source, SourceId, Span};
 
 /// The kind without forces: everybody keeps the velocity.
 pub const CONSTANT: &str = "constant";
@@ -19,7 +19,7 @@ const CHANGING: [&str; 4] = ["heading", "speed", "route", "noise"];
 ///
 /// # Errors
 /// Where there is no such kind.
-pub(super) fn with_kind(
+fn with_kind(
     file: &ScenarioFile,
     name: &str,
     id: SourceId,
@@ -37,7 +37,7 @@ pub(super) fn with_kind(
         (false, None) => {
             let presets = PRESETS.iter().map(|preset| preset.name);
             let known: Vec<&str> = declared.into_iter().chain(presets).chain([CONSTANT]).collect();
-            let said = format!("`--kinds {name}`: there is no such kind");
+            let said = format!("there is no kind `{name}`");
             return Err(
                 Diagnostic::placeless(Code::E0705, said).hint(format!("the kinds are {}", known.join(", ")))
             );
@@ -60,6 +60,48 @@ pub(super) fn with_kind(
         }
     }
     Ok((changed, source))
+}
+
+impl Replay {
+    /// The same with people who all have the kind of a name.
+    ///
+    /// # Errors
+    /// Where there is no such kind.
+    pub fn with_kind(&self, name: &str) -> Result<Self, Vec<Diagnostic>> {
+        let id = SourceId(self.sources.len() as u16);
+        let (scenario, source) = with_kind(&self.scenario, name, id).map_err(|error| vec![error])?;
+        let mut own = self.clone();
+        own.scenario = scenario;
+        own.sources.extend(source);
+        Ok(own)
+    }
+
+    /// What a kind starts from: a kind of the model by its name, or else a preset.
+    pub fn base_of(&self, name: &str) -> String {
+        let is_own =
+            |item: &Item| matches!(item, Item::Kind(kind) if kind.name.name == name);
+        match preset(name).filter(|_| !self.scenario.items.iter().any(is_own)) {
+            Some(preset) => format!("sfm preset {preset}"),
+            None => name.to_owned(),
+        }
+    }
+
+    /// Where the tracks are declared.
+    pub fn place_of_tracks(&self) -> Option<Span> {
+        self.scenario.items.iter().find_map(|item| match item {
+            Item::Tracks { name, .. } if name.name == self.tracks => Some(name.span),
+            _ => None,
+        })
+    }
+}
+
+/// The name of the tracks of the first people of a model who were recorded.
+pub fn first_tracks(file: &ScenarioFile) -> Option<String> {
+    file.items.iter().find_map(|item| match item {
+        Item::Agents(decl) => decl.recorded.as_ref().map(|recorded| recorded.tracks.name.clone()),
+        Item::Group(decl) => decl.recorded.as_ref().map(|recorded| recorded.tracks.name.clone()),
+        _ => None,
+    })
 }
 
 /// The kind of the first people of a model.

@@ -4,6 +4,10 @@
 //! region around the mean m with probability 0.9, where (x - m) S^-1 (x - m) <= (1 + 1/n) 2 (n - 1)/(n - 2) F and S is the
 //! covariance of the sample (Hotelling 1931; the quantile F of F(2, n - 2) is (n - 2)/2 (0.1^(-2/(n - 2)) - 1)). With many trials
 //! the bound is that of the chi-squared law, 4.605.
+//!
+//! Parameters are fitted by the predictive density: that of another position given the sample, if nothing was known of the law
+//! before. It is Student's t law of the plane with n - 2 degrees of freedom, the centre m and the scale
+//! (1 + 1/n) (n - 1)/(n - 2) S (Geisser 1993, section 9.1). It allows for the number of trials, and its logarithm is a proper score.
 
 use crate::base::geometry::Vec2;
 use crate::base::math;
@@ -25,6 +29,8 @@ pub struct Fit {
     pub inside: bool,
     /// Logarithm of the density of the normal law there, 1/m^2.
     pub log_density: f64,
+    /// Logarithm of the predictive density there, 1/m^2.
+    pub predictive: f64,
 }
 
 impl Fit {
@@ -41,9 +47,14 @@ impl Fit {
         let (determinant, off) = (xx * yy - xy * xy, recorded - mean);
         let square = (yy * off.x * off.x - 2.0 * xy * off.x * off.y + xx * off.y * off.y) / determinant;
         let outside = math::exp(-2.0 / (n - 2.0) * math::ln(1.0 - REGION)) - 1.0;
+        let scale = (1.0 + 1.0 / n) * (n - 1.0) / (n - 2.0);
         Some(Self {
             inside: square <= (1.0 + 1.0 / n) * (n - 1.0) * outside,
             log_density: -0.5 * square - 0.5 * math::ln(determinant) - math::ln(2.0 * PI),
+            predictive: -0.5 * n * math::ln_1p(square / scale / (n - 2.0))
+                - math::ln(scale)
+                - 0.5 * math::ln(determinant)
+                - math::ln(2.0 * PI),
         })
     }
 }
@@ -76,6 +87,23 @@ mod tests {
             // The standard error is 0.0047.
             assert!((share - 0.9).abs() < 0.019, "{share} of {count}");
         }
+    }
+
+    #[test]
+    fn the_predictive_density_integrates_to_one_and_tends_to_the_normal_one() {
+        for count in [6, 20] {
+            let all = positions(1, count);
+            let cell = |k: i32| 0.1 * (f64::from(k) + 0.5);
+            let mut sum = 0.0;
+            for i in -600..600 {
+                for j in -300..300 {
+                    sum += 0.01 * Fit::of(&all, Vec2::new(cell(i), cell(j))).unwrap().predictive.exp();
+                }
+            }
+            assert!((sum - 1.0).abs() < 4e-3, "{sum} of {count}");
+        }
+        let many = Fit::of(&positions(2, 20_000), Vec2::new(2.0, 0.5)).unwrap();
+        assert!((many.predictive - many.log_density).abs() < 1e-3, "{many:?}");
     }
 
     #[test]

@@ -95,7 +95,7 @@ impl Replay {
     fn ask(&mut self, input: &Input<'_>) -> Result<(), Vec<Diagnostic>> {
         self.formulas = Formulas::of(input.properties, SourceId(self.sources.len() as u16));
         self.sources.push(self.formulas.source.clone());
-        if self.formulas.names.is_empty() {
+        if self.formulas.names.is_empty() && !input.properties.is_empty() {
             let error = Diagnostic::placeless(Code::E0705, "the property files name no property");
             let hint = "write one: `property safe = G<=4.8 s (distance(user, friend) > 0.5 m)`";
             return Err(vec![error.hint(hint)]);

@@ -11,6 +11,7 @@ pub mod brief;
 pub mod csv;
 mod escape;
 pub mod evaluate;
+pub mod fit;
 mod exit;
 pub mod figure;
 pub mod forecast;

@@ -32,6 +32,7 @@ pub mod cusum;
 mod default_estimator;
 pub mod difference;
 pub mod estimator;
+pub mod evolution;
 pub mod histogram;
 mod interval;
 pub mod invalid;

@@ -5,6 +5,7 @@ mod budgets;
 mod calls;
 mod errors;
 mod escapes;
+mod fit;
 mod forecasts;
 pub(crate) mod formats;
 mod gait;

@@ -1,4 +1,4 @@
-//! The options of `smc monitor` and `smc evaluate`.
+//! The options of `smc monitor`, `smc evaluate` and `smc fit`.
 
 use crate::cli::values::{Model, parse_count, parse_duration, parse_moment, parse_share, parse_velocity};
 use crate::data::tracks::Velocity;
@@ -95,6 +95,107 @@ pub(in crate::cli) struct EvaluateCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = EvaluateFormat::Text)]
     pub(super) format: EvaluateFormat,
+}
+
+/// `smc fit`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct FitCommand {
+    /// The model; its people are in the tracks.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Tracks of the model.
+    #[arg(long, value_name = "TRACKS")]
+    pub(super) tracks: String,
+    /// What is fitted: parameters of the kind such as `A`, `tau` and `noise`, and `heading` and `speed`, the standard deviations
+    /// of the laws `recorded + normal(0 deg, S)` and `recorded * normal(1, S)`. A search begins at the values of the model.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', required = true)]
+    pub(super) parameters: Vec<String>,
+    /// Property files: minimise the Brier score of their properties, instead of maximising the density of recorded positions.
+    #[arg(long, value_name = "PROPERTIES")]
+    pub(super) by: Vec<String>,
+    /// The kind: one of the model or a preset; by default that of the user. All people have it.
+    #[arg(long, value_name = "KIND")]
+    pub(super) kind: Option<String>,
+    /// Time between two instants.
+    #[arg(long, value_name = "TIME", default_value = "2s", value_parser = parse_duration)]
+    pub(super) every: Duration,
+    /// First time; the beginning by default.
+    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    pub(super) from: Option<f64>,
+    /// Last time; the end by default.
+    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    pub(super) to: Option<f64>,
+    /// Trials of each instant.
+    #[arg(long, value_name = "N", default_value = "24", value_parser = clap::value_parser!(u64).range(5..=100_000))]
+    pub(super) trials: u64,
+    /// Largest number of generations of the search.
+    #[arg(long, value_name = "N", default_value = "25", value_parser = parse_count)]
+    pub(super) generations: u64,
+    /// Candidates of a generation; 4 + 3 ln n for n parameters by default.
+    #[arg(long, value_name = "N", value_parser = parse_population)]
+    pub(super) population: Option<usize>,
+    /// Share of the persons that the search does not read; the result is scored on them.
+    #[arg(long, value_name = "SHARE", default_value = "25%", value_parser = parse_share)]
+    pub(super) held_out: f64,
+    /// Also score the result with this model and the recording of its people.
+    #[arg(long, value_name = "SCENARIO")]
+    pub(super) test: Option<String>,
+    /// Whoever was recorded slower than this, in m/s, is left out.
+    #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
+    pub(super) speed: f64,
+    /// Velocities: `seen` (the difference from the last position) or `recorded` (as in the file).
+    #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
+    pub(super) velocity: Velocity,
+    /// Confidence of intervals, by bootstrap over persons.
+    #[arg(long, value_name = "SHARE", default_value = "95%", value_parser = parse_share)]
+    pub(super) confidence: f64,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Number of threads; all cores by default. Never changes a result.
+    #[arg(short = 'j', long)]
+    pub(super) threads: Option<usize>,
+    /// Format of the output.
+    #[arg(long, value_enum, default_value_t = FitFormat::Text)]
+    pub(super) format: FitFormat,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// Write no log of the generations on standard error.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+impl FitCommand {
+    /// What it has in common with the others.
+    pub(super) fn replayed(&self) -> Replayed {
+        Replayed {
+            model: self.model.clone(),
+            properties: self.by.clone(),
+            replay: self.tracks.clone(),
+            every: Some(self.every),
+            from: self.from,
+            to: self.to,
+            confidence: self.confidence,
+            seed: self.seed,
+            threads: self.threads,
+            output: self.output.clone(),
+        }
+    }
+}
+
+/// Formats of `smc fit`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum FitFormat {
+    /// Tables, and the declarations for a scenario.
+    Text,
+    /// One object; see docs/schema/fit.schema.json.
+    Json,
+}
+
+fn parse_population(text: &str) -> Result<usize, String> {
+    let count: usize = text.parse().map_err(|_| format!("`{text}` is not a whole number"))?;
+    if (4..=10_000).contains(&count) { Ok(count) } else { Err("a generation has 4 to 10000 candidates".to_owned()) }
 }
 
 /// `--beyond`

@@ -1,11 +1,13 @@
-//! `smc monitor` and `smc evaluate`: models beside recordings.
+//! `smc monitor`, `smc evaluate` and `smc fit`: models beside recordings.
 
 mod arguments;
 mod evaluate;
+mod fit;
 mod monitor;
 
-pub(super) use arguments::{EvaluateCommand, MonitorCommand};
+pub(super) use arguments::{EvaluateCommand, FitCommand, MonitorCommand};
 pub(super) use evaluate::run as evaluate;
+pub(super) use fit::run as fit;
 pub(super) use monitor::run as monitor;
 
 use super::complaint;

@@ -1,0 +1,165 @@
+//! `smc fit`: parameters from a recording.
+
+use super::arguments::{FitCommand, FitFormat};
+use super::{Call, Exit};
+use crate::cli::complaint;
+use crate::cli::inputs;
+use crate::cli::terminal::{Colors, warn};
+use crate::cli::values::Model;
+use crate::data::tracks::Velocity;
+use crate::gait;
+use crate::kernel::driver::MakeDrivers;
+use crate::model::{Kind, Scenario};
+use crate::replay::fit::{Cases, Comparison, Counting, FEWEST, Fitted, Found, Searching, search};
+use crate::replay::{PREDICTED, Replay, Whose, eligible, first_tracks, user_kind};
+use crate::report::fit::{FittedModel, generation};
+use crate::route::Ways;
+use crate::stats::bootstrap::DRAWS;
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+
+/// Runs the command.
+pub(in crate::cli) fn run(arguments: &FitCommand, colors: Colors) -> Exit {
+    let work = |call: &Call| text(arguments, call);
+    super::run(&arguments.replayed(), (arguments.velocity, Whose::Everybody), colors, work)
+}
+
+fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
+    let Call { replay, threads, every, .. } = call;
+    let fitted = parameters(&arguments.parameters).map_err(|error| vec![error])?;
+    let kind = arguments.kind.clone().or_else(|| user_kind(replay)).unwrap_or_default();
+    let base = replay.base_of(&kind);
+    let own = replay.with_kind(&kind)?;
+    let counting = Counting {
+        trials: arguments.trials,
+        seed: arguments.seed,
+        by_properties: !arguments.by.is_empty(),
+    };
+    let instants = eligible(&own, call.instants.clone(), own.recording.step(), arguments.speed, PREDICTED);
+    let cases = Cases::new(&own, &instants, counting, threads)?;
+    if cases.persons.len() < FEWEST {
+        return Err(vec![few(&own, cases.persons.len())]);
+    }
+    let options = Searching {
+        generations: arguments.generations,
+        population: arguments.population,
+        held_out: arguments.held_out,
+        seed: arguments.seed,
+        draws: DRAWS,
+        confidence: arguments.confidence,
+    };
+    let ways = Ways::default();
+    let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let names: Vec<&str> = fitted.iter().map(|one| one.name()).collect();
+    let mut log = |one: &_| {
+        if !arguments.quiet {
+            warn(&generation(one, &names, counting.by_properties));
+        }
+    };
+    let found = search(&cases, &fitted, options, (threads, &drivers), &mut log).map_err(|k| {
+        let said = format!("`--parameters {}`: nothing in this model uses `{}`", names[k], names[k]);
+        let hint = "another value changes no prediction: remove it, or write what needs it into the model";
+        let place = own.place_of_tracks();
+        let error = place.map_or_else(
+            || Diagnostic::placeless(Code::E0713, &said),
+            |place| Diagnostic::error(Code::E0713, place, &said),
+        );
+        vec![error.hint(hint)]
+    })?;
+    let test = match &arguments.test {
+        Some(model) => {
+            let compared = tested(arguments, model, &found, options, (call, &drivers))?;
+            Some((model.clone(), compared))
+        }
+        None => None,
+    };
+    let report = FittedModel {
+        model: arguments.model.scenario.clone(),
+        recording: own.tracks.clone(),
+        velocity: own.recording.velocity().name(),
+        properties: arguments.by.clone(),
+        kind,
+        base,
+        trials: arguments.trials,
+        seed: arguments.seed,
+        every: *every,
+        instants: instants.len() as u64,
+        confidence: arguments.confidence,
+        found,
+        test,
+    };
+    Ok(match arguments.format {
+        FitFormat::Text => report.to_text(),
+        FitFormat::Json => report.to_json(),
+    })
+}
+
+/// The parameters of some names, each once.
+fn parameters(names: &[String]) -> Result<Vec<Fitted>, Diagnostic> {
+    let known: Vec<Fitted> = Fitted::of_kind(Kind::Sfm).collect();
+    let mut all: Vec<Fitted> = Vec::new();
+    for name in names {
+        let Some(one) = known.iter().find(|one| one.name() == name) else {
+            let error = complaint::argument(
+                format!("`--parameters {name}`: there is no parameter `{name}` that can be fitted"),
+                format!(
+                    "choose from {}",
+                    known.iter().map(|one| one.name()).collect::<Vec<_>>().join(", ")
+                ),
+            );
+            return Err(error);
+        };
+        if !all.contains(one) {
+            all.push(*one);
+        }
+    }
+    Ok(all)
+}
+
+fn few(replay: &Replay, count: usize) -> Diagnostic {
+    let said = format!("a fit needs {FEWEST} tracks of people who move for {PREDICTED} s (got {count})");
+    let error = match replay.place_of_tracks() {
+        Some(place) => Diagnostic::error(Code::E0713, place, said),
+        None => Diagnostic::placeless(Code::E0713, said),
+    };
+    error.hint("choose a longer recording, other times, a shorter `--every` or a smaller `--speed`")
+}
+
+/// The fitted parameters in another model with its recording.
+fn tested(
+    arguments: &FitCommand,
+    scenario: &str,
+    found: &Found,
+    options: Searching,
+    (call, drivers): (&Call, &MakeDrivers),
+) -> Result<Option<Comparison>, Vec<Diagnostic>> {
+    let model = Model { scenario: scenario.to_owned(), ..arguments.model.clone() };
+    let parsed = inputs::parse(&model, &arguments.by);
+    let errors = parsed.inputs.diagnostics.iter().filter(|one| one.severity == Severity::Error);
+    if errors.count() > 0 {
+        let said = format!("`--test {scenario}` has errors");
+        return Err(vec![complaint::argument(said, format!("`smc show {scenario}` lists them"))]);
+    }
+    let input = parsed.input();
+    let tracks = first_tracks(input.scenario).unwrap_or_default();
+    let placeless = |errors: Vec<Diagnostic>| {
+        // Their places are in files that this call does not show.
+        let one = |error: Diagnostic| Diagnostic::placeless(error.code, format!("{scenario}: {}", error.title));
+        errors.into_iter().map(one).collect::<Vec<_>>()
+    };
+    let velocity: Velocity = arguments.velocity;
+    let replay = Replay::new(&input, &tracks, velocity, Whose::Everybody).map_err(placeless)?;
+    let replay = match &arguments.kind {
+        Some(kind) => replay.with_kind(kind).map_err(placeless)?,
+        None => replay,
+    };
+    let everything = replay.instants(call.every, (f64::NEG_INFINITY, f64::INFINITY));
+    let instants = eligible(&replay, everything, replay.recording.step(), arguments.speed, PREDICTED);
+    let counting = Counting {
+        trials: arguments.trials,
+        seed: arguments.seed,
+        by_properties: !arguments.by.is_empty(),
+    };
+    let cases = Cases::new(&replay, &instants, counting, &call.threads).map_err(placeless)?;
+    Ok(Comparison::of(&cases, found, options, (&call.threads, drivers)))
+}

@@ -1,0 +1,226 @@
+//! Instants of a recording from which trials begin, and the loss of parameters there.
+
+use super::parameter::Fitted;
+use crate::base::geometry::Vec2;
+use crate::base::tick::Tick;
+use crate::compile::study::Study;
+use crate::engine::cell::{Reading, Series};
+use crate::engine::sample::{Followed, Sample, sample};
+use crate::engine::{PreparedWorld, Threads};
+use crate::kernel::driver::MakeDrivers;
+use crate::model::AgentId;
+use crate::replay::course::{Beyond, course};
+use crate::replay::evaluate::PREDICTED;
+use crate::replay::formulas::targets;
+use crate::replay::instants::Instant;
+use crate::replay::monitor::happened;
+use crate::replay::region::{Fit, HORIZONS};
+use crate::replay::situation::{Replay, is_of_a_place};
+use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Loss of a position that no trial reaches because all of them fail: that of a density of 1e-9 /m^2.
+const MISSED: f64 = 20.7;
+
+/// How trials are counted.
+#[derive(Clone, Copy, Debug)]
+pub struct Counting {
+    /// Trials of each instant.
+    pub trials: u64,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Whether the loss is the Brier score of the properties; else it is that of positions.
+    pub by_properties: bool,
+}
+
+/// Sum of losses and their number, person by person.
+pub type Parts = Vec<[f64; 2]>;
+
+/// The instants of a model with a recording, compiled.
+pub struct Cases {
+    cases: Vec<Case>,
+    /// Ids of the persons that count, ascending; [`Parts`] have this order.
+    pub persons: Vec<u32>,
+    counting: Counting,
+}
+
+/// One instant.
+struct Case {
+    study: Study,
+    world: usize,
+    columns: Vec<usize>,
+    /// Whether each property held.
+    truths: Vec<Option<bool>>,
+    /// Who is followed, and the numbers of their persons; with properties the user alone counts.
+    agents: Vec<AgentId>,
+    persons: Vec<usize>,
+    ticks: Vec<u64>,
+    /// Where each of them was at each tick.
+    recorded: Vec<Vec<Option<Vec2>>>,
+    series: Series,
+}
+
+impl Cases {
+    /// Those of some instants of persons. By positions, all persons of a time are followed in the same trials.
+    ///
+    /// # Errors
+    /// What is wrong with the model.
+    pub fn new(
+        replay: &Replay,
+        instants: &[Instant],
+        counting: Counting,
+        threads: &Threads,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let mut persons: Vec<u32> = instants.iter().map(|one| one.person).collect();
+        persons.sort_unstable();
+        persons.dedup();
+        let mut groups: Vec<(u64, Vec<Instant>)> = Vec::new();
+        for instant in instants {
+            let number = groups.len() as u64;
+            match groups.last_mut() {
+                Some((_, group)) if !counting.by_properties && group[0].time == instant.time => {
+                    group.push(*instant);
+                }
+                _ => groups.push((number, vec![*instant])),
+            }
+        }
+        let number: BTreeMap<u32, usize> = persons.iter().copied().zip(0..).collect();
+        let one = |(at, group): &(u64, Vec<Instant>)| case(replay, group, (*at, &number), counting);
+        let cases = threads.map(&groups, one).into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { cases: cases.into_iter().flatten().collect(), persons, counting })
+    }
+
+    /// Where searches for some parameters begin, SI units.
+    pub(super) fn starts(&self, fitted: &[Fitted]) -> Vec<f64> {
+        let agents = self.cases.first().map_or(&[][..], |one| &one.study.worlds[one.world].scenario.agents);
+        fitted.iter().map(|one| one.start(agents)).collect()
+    }
+
+    /// The loss with some parameters, SI units; without any that of the model as it is.
+    pub fn losses(&self, values: &[(Fitted, f64)], threads: &Threads, drivers: &MakeDrivers) -> Parts {
+        let found = threads.map(&self.cases, |case| case.losses(values, self.counting, drivers));
+        let mut parts = vec![[0.0, 0.0]; self.persons.len()];
+        for (person, loss) in found.into_iter().flatten() {
+            parts[person][0] += loss;
+            parts[person][1] += 1.0;
+        }
+        parts
+    }
+}
+
+/// The case of some instants of one time; the first person is the user. `None` where people cannot start there.
+fn case(
+    replay: &Replay,
+    group: &[Instant],
+    (at, number): (u64, &BTreeMap<u32, usize>),
+    counting: Counting,
+) -> Result<Option<Case>, Vec<Diagnostic>> {
+    let Some(user) = group.first().copied() else { return Ok(None) };
+    let study = match replay.study_at(user) {
+        Ok(study) => study,
+        Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => return Ok(None),
+        Err(errors) => return Err(errors),
+    };
+    let targets = targets(&study);
+    let index = targets.first().map_or(study.base, |target| target.world);
+    let Some(world) = study.worlds.get(index) else { return Ok(None) };
+    let (clock, last) = (world.scenario.clock, world.scenario.horizon);
+    let last = PREDICTED.min(clock.seconds(Tick(last.0)));
+    let dt = clock.seconds(Tick(1));
+    let times: Vec<f64> = HORIZONS.into_iter().filter(|time| *time <= last + 1e-9).collect();
+    let counts = |id: u32| group.iter().any(|one| one.person == id);
+    let (mut agents, mut persons, mut recorded) = (Vec::new(), Vec::new(), Vec::new());
+    for (k, agent) in world.scenario.agents.iter().enumerate() {
+        let [id] = agent.start.seen[..] else { continue };
+        let id = replay.written(user.person, id);
+        let Some(person) = number.get(&id).filter(|_| counts(id)) else { continue };
+        let then = |time: &f64| Some(course(&replay.recording, id, user.time + time, Beyond::Unresolved)?.0);
+        agents.push(AgentId(k as u32));
+        persons.push(*person);
+        recorded.push(times.iter().map(then).collect());
+    }
+    let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
+    let truths = match counting.by_properties {
+        true => happened(replay, user, (world, &columns), Beyond::Onward),
+        false => Vec::new(),
+    };
+    Ok(Some(Case {
+        world: index,
+        columns: if counting.by_properties { columns } else { Vec::new() },
+        truths,
+        agents: if counting.by_properties { Vec::new() } else { agents },
+        persons: if counting.by_properties {
+            number.get(&user.person).copied().into_iter().collect()
+        } else {
+            persons
+        },
+        ticks: if counting.by_properties {
+            Vec::new()
+        } else {
+            times.iter().map(|time| (time / dt).round() as u64).collect()
+        },
+        recorded,
+        series: Series { seed: counting.seed, branch: (at & 0xffff) as u16 },
+        study,
+    }))
+}
+
+impl Case {
+    /// The losses of persons.
+    fn losses(
+        &self,
+        values: &[(Fitted, f64)],
+        counting: Counting,
+        drivers: &MakeDrivers,
+    ) -> Vec<(usize, f64)> {
+        let mut study = self.study.clone();
+        let scenario = Arc::make_mut(&mut study.worlds[self.world].scenario);
+        values.iter().for_each(|(one, value)| one.set(scenario, *value));
+        let Some(prepared) = PreparedWorld::of(&study, self.world, counting.seed, drivers) else {
+            return Vec::new();
+        };
+        let followed = Followed { agents: &self.agents, ticks: &self.ticks };
+        let found =
+            sample(&prepared, &self.columns, self.series, counting.trials, followed).unwrap_or_default();
+        if counting.by_properties { self.of_properties(&found) } else { self.of_positions(&found) }
+    }
+
+    fn of_positions(&self, found: &Sample) -> Vec<(usize, f64)> {
+        let mut losses = Vec::new();
+        for (k, (person, recorded)) in self.persons.iter().zip(&self.recorded).enumerate() {
+            for (tick, position) in recorded.iter().enumerate() {
+                let Some(position) = position else { continue };
+                let place = tick * self.agents.len() + k;
+                let predicted: Vec<Vec2> =
+                    found.paths.iter().filter_map(|way| way.get(place).copied()).collect();
+                let density = Fit::of(&predicted, *position).map(|fit| fit.predictive);
+                losses.push((*person, density.filter(|one| one.is_finite()).map_or(MISSED, |one| -one)));
+            }
+        }
+        losses
+    }
+
+    /// Squared differences of probabilities and outcomes.
+    fn of_properties(&self, found: &Sample) -> Vec<(usize, f64)> {
+        let Some(person) = self.persons.first() else { return Vec::new() };
+        let one = |(column, truth): (usize, &Option<bool>)| {
+            let held = f64::from(u8::from((*truth)?));
+            let known: Vec<bool> = found
+                .readings
+                .iter()
+                .filter_map(|row| match row.get(column) {
+                    Some(Reading::Truth(truth)) => Some(*truth),
+                    _ => None,
+                })
+                .collect();
+            // Without a trial that says anything both outcomes are as likely.
+            let share = match known.len() {
+                0 => 0.5,
+                count => known.iter().filter(|truth| **truth).count() as f64 / count as f64,
+            };
+            Some((*person, (share - held) * (share - held)))
+        };
+        self.truths.iter().enumerate().filter_map(one).collect()
+    }
+}
