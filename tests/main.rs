@@ -13,6 +13,7 @@ mod claims;
 mod cli;
 mod codes;
 mod compile;
+mod cookbook;
 mod crowd;
 mod determinism;
 mod diagnostics;

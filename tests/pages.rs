@@ -241,10 +241,26 @@ fn a_page_works_in_a_browser() {
         eprintln!("SKIPPED: no Chromium or no Node.js on this machine");
         return;
     };
-    let place = meeting(NEAR);
-    checked(&place, &[]);
+    // The first trials hold: the one that fails is not the first of all.
+    let place = meeting(&NEAR.replace("> 0.3 m", "> 0 m"));
+    let (report, _) = checked(&place, &[]);
+    assert!(report["results"][0]["witnesses"][0]["trial"].as_u64() > Some(0), "{report}");
+    let model = |name: &str| format!("{}/models/{name}.scn", env!("CARGO_MANIFEST_DIR"));
+    for (words, page) in [
+        (["path", &model("plaza"), "--report"], "path.html"),
+        (["walk", &model("workplace"), "--report"], "walk.html"),
+    ] {
+        let said = place.call(&[&words[..], &[page]].concat());
+        assert_eq!(said.code, Some(0), "{}", said.err);
+    }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser/page.mjs");
-    let page = place.path("m.html");
-    let said = Command::new("node").arg(script).arg(browser).arg(page).output().unwrap();
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stdout));
+    std::thread::scope(|scope| {
+        for page in ["m.html", "path.html", "walk.html"] {
+            let path = place.path(page);
+            scope.spawn(move || {
+                let said = Command::new("node").arg(script).arg(browser).arg(path).output().unwrap();
+                assert!(said.status.success(), "{page}: {}", String::from_utf8_lossy(&said.stdout));
+            });
+        }
+    });
 }

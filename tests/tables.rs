@@ -106,3 +106,24 @@ fn functions_in_the_manual_are_those_of_the_table_with_their_units() {
         assert!(page.contains(function.name) && page.len() > function.name.len() + 20, "{page}");
     }
 }
+
+#[test]
+fn the_manual_names_every_command_that_writes_a_page() {
+    let manual = text("docs/report.md");
+    let help = |words: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_smc")).args(words).arg("--help").output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let all = help(&[]);
+    let listed = all.split_once("Commands:\n").unwrap().1.split_once("\n\n").unwrap().0;
+    let names = listed
+        .lines()
+        .filter(|line| !line.starts_with("   "))
+        .filter_map(|line| line.split_whitespace().next());
+    let with_pages: Vec<&str> = names.filter(|name| help(&[name]).contains("--report <FILE.html>")).collect();
+    assert!(with_pages.len() >= 4, "{with_pages:?}");
+    for name in with_pages {
+        let call = format!("smc {name} ");
+        assert!(manual.lines().any(|line| line.starts_with(&call) && line.contains(" --report ")), "{name}");
+    }
+}

@@ -1,6 +1,7 @@
 // Checks a page of `--report` in a browser: `node page.mjs BROWSER PAGE.html`. Ends with 1 where something is wrong.
 
 import { open } from './browser.mjs';
+import { places } from './places.mjs';
 
 const [browser, file] = process.argv.slice(2);
 const wrong = [];
@@ -18,6 +19,7 @@ const TIME = "Number(document.getElementById('time').value)";
 
 async function plays(page) {
   const entry = await page.value("JSON.parse(document.getElementById('data').textContent).entries[0]");
+  check(await page.value("document.getElementById('entry').value === '0'"), 'a page opens with the first trial of its list');
   const start = entry.decided === null ? 0 : entry.decided;
   check(Math.abs(await page.value(TIME) - start) < 1e-6, 'a page opens at the deciding moment');
   await page.press('Home');
@@ -42,6 +44,12 @@ async function plays(page) {
     range.dispatchEvent(new Event('input'));
   })()`);
   check(await page.value(PLAN) !== first, 'scrubbing moves agents');
+  await page.press('End');
+  check(await page.value("document.getElementById('time').value === document.getElementById('time').max"), 'End goes to the end');
+  if (entry.decided !== null) {
+    await page.press('d');
+    check(Math.abs(await page.value(TIME) - entry.decided) < 1e-6, 'D goes to the deciding moment');
+  }
   const before = await page.value(PLAN);
   await page.press('+');
   check(await page.value(PLAN) !== before, 'plus zooms');
@@ -49,6 +57,33 @@ async function plays(page) {
   check(await page.value(PLAN) === before, 'zero shows the whole plan');
   await page.press('ArrowRight', 8);
   check(await page.value(PLAN) !== before, 'a shifted arrow key moves the plan');
+}
+
+// The first trial of the list is the one that fails, and so is that of the button beside it.
+async function opensFailing(page) {
+  const open = () => page.value(`({
+    chosen: document.getElementById('entry').selectedOptions[0].textContent,
+    command: document.getElementById('command').textContent,
+    trial: (() => {
+      const data = JSON.parse(document.getElementById('data').textContent);
+      return data.traces[data.entries[Number(document.getElementById('entry').value)].trace].trial;
+    })(),
+  })`);
+  const failing = await page.value("/fails in trial (\\d+)/.exec(document.querySelector('main').innerText)?.[1] ?? null");
+  if (failing === null) return;
+  const isIt = ({ chosen, command, trial }) => trial === Number(failing) && chosen === `trial ${failing} fails`
+    && command.endsWith(`--trial ${failing}`);
+  const choose = (number) => page.value(`(() => {
+    const entry = document.getElementById('entry');
+    entry.value = String(${number});
+    entry.dispatchEvent(new Event('change'));
+  })()`);
+  await choose(0);
+  const first = await open();
+  check(isIt(first), `the first trial is ${JSON.stringify(first)}, not the failing one, ${failing}`);
+  await choose("document.getElementById('entry').options.length - 1");
+  await page.value("document.querySelector('button.show').click()");
+  check(isIt(await open()), 'the button beside the failing trial opens another one');
 }
 
 // Tab reaches all that can be focused, in the order of the page.
@@ -85,11 +120,24 @@ for (const dark of [false, true]) {
       }
       return 'rgb(255, 255, 255)';
     };
-    const texts = [...document.querySelectorAll('h1, h2, p, code, pre, span, button, select, label, summary, small')];
+    const own = (one) => [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim() !== '');
+    const texts = [...document.body.querySelectorAll('*')].filter((one) => own(one) && !one.closest('script, noscript'));
     const low = texts.filter((one) => !one.disabled && one.checkVisibility()).map((one) => {
-      const [a, b] = [light(getComputedStyle(one).color), light(paper(one))];
+      const style = getComputedStyle(one);
+      const [a, b] = [light(one instanceof SVGElement ? style.fill : style.color), light(paper(one))];
       return { ratio: (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), text: one.tagName + '.' + one.className };
     }).filter(({ ratio }) => ratio < 4.5);
+    // Names on the plan have a rim in the colour of the stage.
+    const root = document.documentElement;
+    const stage = document.createElement('span');
+    root.append(stage);
+    const named = (ink) => { stage.style.color = 'var(--' + ink + ')'; return light(getComputedStyle(stage).color); };
+    for (const ink of ['ink', 'soft', 'deciding']) {
+      const [a, b] = [named(ink), named('stage')];
+      const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      if (ratio < 4.5) low.push({ ratio, text: 'plan.' + ink });
+    }
+    stage.remove();
     return [...new Set(low.map(({ ratio, text }) => text + ' ' + ratio.toFixed(1)))];
   })()`);
   check(contrast.length === 0, `contrast below 4.5: ${contrast.join(', ')}`);
@@ -98,7 +146,12 @@ for (const dark of [false, true]) {
 }
 const page = await open(browser, file);
 await plays(page);
+await page.press('0');
+const { compared, wrong: misplaced } = await places(page);
+check(misplaced.length === 0, `agents are not where the data say: ${misplaced.join(', ')}`);
+check(compared === null || compared > 0, 'no agent was found on the plan');
 await tabs(page);
+await opensFailing(page);
 check(await page.value("document.querySelectorAll('script[src], link, img, iframe').length") === 0, 'nothing is loaded');
 check(page.requests.length === 0, `requests: ${page.requests.join(', ')}`);
 check(page.errors.length === 0, `errors: ${page.errors.join('; ')}`);
