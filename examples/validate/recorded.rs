@@ -7,8 +7,7 @@ use smc::gait;
 use smc::library::{Folder, Names, parse};
 use smc::model::Scenario;
 use smc::replay::{
-    Beyond, CONSTANT, Displacement, Evaluating, PREDICTED, Predicted, Replay, Whose, eligible,
-    evaluate,
+    Beyond, CONSTANT, Displacement, Evaluating, PREDICTED, Predicted, Replay, Whose, eligible, evaluate,
 };
 use smc::route::Ways;
 use std::fmt::Write as _;
@@ -117,8 +116,7 @@ fn cells(found: &Predicted) -> String {
         let count = all.len() as f64;
         let rate = all.iter().map(|one| truth(one.happened)).sum::<f64>() / count;
         let square = |x: f64| x * x;
-        let score =
-            all.iter().map(|one| square(one.probability - truth(one.happened))).sum::<f64>() / count;
+        let score = all.iter().map(|one| square(one.probability - truth(one.happened))).sum::<f64>() / count;
         format!("{:.2}", 1.0 - score / (rate * (1.0 - rate)))
     };
     format!(

@@ -78,8 +78,7 @@ impl Replay {
 
     /// What a kind starts from: a kind of the model by its name, or else a preset.
     pub fn base_of(&self, name: &str) -> String {
-        let is_own =
-            |item: &Item| matches!(item, Item::Kind(kind) if kind.name.name == name);
+        let is_own = |item: &Item| matches!(item, Item::Kind(kind) if kind.name.name == name);
         match preset(name).filter(|_| !self.scenario.items.iter().any(is_own)) {
             Some(preset) => format!("sfm preset {preset}"),
             None => name.to_owned(),

@@ -195,7 +195,11 @@ pub(super) enum FitFormat {
 
 fn parse_population(text: &str) -> Result<usize, String> {
     let count: usize = text.parse().map_err(|_| format!("`{text}` is not a whole number"))?;
-    if (4..=10_000).contains(&count) { Ok(count) } else { Err("a generation has 4 to 10000 candidates".to_owned()) }
+    if (4..=10_000).contains(&count) {
+        Ok(count)
+    } else {
+        Err("a generation has 4 to 10000 candidates".to_owned())
+    }
 }
 
 /// `--beyond`
