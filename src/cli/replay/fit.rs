@@ -128,7 +128,7 @@ fn tested(
     (call, drivers): (&Call, &MakeDrivers),
 ) -> Result<Option<Comparison>, Vec<Diagnostic>> {
     let model = Model { scenario: scenario.to_owned(), ..arguments.model.clone() };
-    let parsed = inputs::parse(&model, &arguments.by);
+    let (parsed, _) = inputs::parse(&model, &arguments.by);
     let errors = parsed.inputs.diagnostics.iter().filter(|one| one.severity == Severity::Error);
     if errors.count() > 0 {
         let said = format!("`--test {scenario}` has errors");
