@@ -43,3 +43,14 @@ async function copy(button) {
 for (const button of document.querySelectorAll('button.copy')) {
   button.addEventListener('click', () => copy(button));
 }
+
+// A link may lead into a text that is folded up.
+function unfold() {
+  const target = location.hash.length > 1 && byId(location.hash.slice(1));
+  const folded = target && target.closest('details');
+  if (!folded) return;
+  folded.open = true;
+  target.scrollIntoView({ block: 'center' });
+}
+addEventListener('hashchange', unfold);
+unfold();

@@ -89,7 +89,7 @@ async function opensFailing(page) {
 // Tab reaches all that can be focused, in the order of the page.
 async function tabs(page) {
   const all = await page.value(`(() => {
-    const list = [...document.querySelectorAll('button, select, input, summary, [tabindex]')];
+    const list = [...document.querySelectorAll('a[href], button, select, input, summary, [tabindex]')];
     const seen = list.filter((one) => !one.disabled && one.checkVisibility());
     seen.forEach((one, k) => { one.dataset.order = k; });
     document.activeElement.blur();

@@ -5,19 +5,22 @@ mod chart;
 mod crowd;
 mod highlight;
 mod histogram;
+mod links;
 mod player;
 mod policy;
 mod section;
 
 use super::number::{counted, duration};
 use super::text;
-use crate::engine::outcome::{CallResult, QueryResult, Witness};
+use crate::engine::outcome::{AskedQuery, CallResult, QueryResult, Witness};
 use crate::engine::traces::Traces;
 use crate::syntax::source::Source;
 use askama::Template;
 use crowd::Crowd;
+use links::Links;
 use player::Player;
 use section::Section;
+use std::sync::Arc;
 
 const STYLE: &str = include_str!("../../../templates/page.css");
 /// The script in its parts: each uses those before it.
@@ -99,16 +102,35 @@ pub fn page(page: Page<'_>) -> String {
             table.rows.truncate(MOST_ROWS);
         }
     }
-    let (crowds, crowds_note) = crowd::crowds(&run, &traces.list);
-    let player = Player::of(&run, traces);
-    let played = |place: usize, witness: &Witness| player.as_ref()?.number(place, witness);
+    let is_shown = |source: &&Source| !source.text.is_empty() && !source.name.starts_with("--");
+    let sources: Vec<&Source> = sources.iter().filter(is_shown).collect();
     let numbered: Vec<(usize, &QueryResult)> = {
         let mut all: Vec<_> = run.results.iter().enumerate().collect();
         all.sort_by_key(|(_, result)| result.asked.index);
         all
     };
-    let sections = numbered.chunk_by(|(_, a), (_, b)| text::same_sweep(a, b));
-    let sections = sections.map(|group| section::section(group, &played)).collect();
+    let groups: Vec<&[(usize, &QueryResult)]> =
+        numbered.chunk_by(|(_, a), (_, b)| text::same_sweep(a, b)).collect();
+    let asked: Vec<&AskedQuery> = groups.iter().map(|group| &group[0].1.asked).collect();
+    let (crowds, crowds_note) = crowd::crowds(&run, &traces.list);
+    let scenarios: Vec<_> = traces.list.iter().map(|trace| Arc::clone(&trace.scenario)).collect();
+    let player = Player::of(&run, traces);
+    let linked = if player.is_some() { scenarios.as_slice() } else { &[] };
+    let links = Links::of(&sources, &asked, linked);
+    let played = |place: usize, witness: &Witness| player.as_ref()?.number(place, witness);
+    let texts = sources.iter().enumerate().map(|(number, source)| {
+        let text = highlight::highlighted(&source.text, MOST_TEXT, (&links, number));
+        (source.name.clone(), text)
+    });
+    let texts: Vec<(String, String)> = texts.collect();
+    // The line may be one that is cut off.
+    let is_there = |line: &&str| texts.iter().any(|(_, text)| text.contains(&format!("id=\"{line}\"")));
+    let sections = groups.iter().enumerate().map(|(number, group)| Section {
+        id: links::section(number),
+        line: links.line(&sources, asked[number]).filter(is_there).map(str::to_owned),
+        ..section::section(group, &played)
+    });
+    let sections = sections.collect();
     let mut about = format!("seed {}, smc {}", run.seed, run.version);
     if !run.results.is_empty() || run.trials > 0 {
         about += &format!(", {} in {}", counted(run.trials, "trial"), duration(run.elapsed_s));
@@ -118,8 +140,6 @@ pub fn page(page: Page<'_>) -> String {
         let hint = finding.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
         (finding.error, finding.line() + &hint)
     };
-    let texts = sources.iter().filter(|source| !source.text.is_empty() && !source.name.starts_with("--"));
-    let texts = texts.map(|source| (source.name.clone(), highlight::highlighted(&source.text, MOST_TEXT)));
     let html = Html {
         title: if run.scenario.is_empty() { "smc".to_owned() } else { run.scenario.clone() },
         policy: policy::policy(SCRIPT, STYLE),
@@ -133,7 +153,7 @@ pub fn page(page: Page<'_>) -> String {
         warnings: run.warnings.clone(),
         interrupted: run.interrupted,
         failure: run.failure.as_ref().map(crate::engine::outcome::Failure::message),
-        texts: texts.collect(),
+        texts,
         replay: run.replay.clone(),
         player,
         crowds,

@@ -14,6 +14,10 @@ use crate::report::text;
 /// What the page says of a query.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Section {
+    /// Its anchor.
+    pub(super) id: String,
+    /// The anchor of the line of the query, if the page has its text.
+    pub(super) line: Option<String>,
     /// The word of the verdict, and its class.
     pub(super) word: &'static str,
     pub(super) class: String,
@@ -98,6 +102,7 @@ pub(super) fn section(
         intervals: if is_one { first.interval.clone() } else { String::new() },
         choice: recommended(first),
         results: group.iter().map(|(k, result)| facts(*k, result, swept, played)).collect(),
+        ..Section::default()
     }
 }
 
