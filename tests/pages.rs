@@ -1,6 +1,6 @@
 //! The pages of `--report`: what the player is given, that nothing gets out of its element, and that they work in a browser.
 
-use crate::program::Place;
+use crate::program::{Place, at_root};
 use base64::Engine as _;
 use serde_json::Value;
 use sha2::Digest as _;
@@ -192,7 +192,7 @@ fn a_crowd_is_thinned_and_the_page_says_so() {
     let said = place.call(&["simulate", "c.scn", "--report", "c.html"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
     let page = std::fs::read_to_string(place.path("c.html")).unwrap();
-    assert!(page.len() < 2_100_000, "{} bytes", page.len());
+    assert!(page.len() < 2_600_000, "{} bytes", page.len());
     let data = data(&page);
     let spacing = data["traces"][0]["spacing"].as_f64().unwrap();
     assert!(spacing > 0.15, "{spacing}");
@@ -200,6 +200,9 @@ fn a_crowd_is_thinned_and_the_page_says_so() {
         page.contains(&format!("States every {spacing} s")),
         "the page says how far apart the states are"
     );
+    let crowd = element(&page, "<section id=\"crowd\"", "</section>");
+    assert!(crowd.contains("Presence: ") && crowd.contains("Speed against density."));
+    assert!(crowd.len() < 500_000, "{} bytes", crowd.len());
 }
 
 #[test]
@@ -219,9 +222,11 @@ fn a_model_without_agents_has_bars_alone() {
 #[test]
 fn a_missing_folder_is_named_and_no_file_is_left() {
     let place = meeting(NEAR);
+    place.write("m.csv", "time,id,x,y\n1,1,0,0\n2,1,1,0\n".as_bytes());
     for words in [
         &["check", "m.scn", "m.bltl", "-q", "--report", "none/m.html"][..],
         &["simulate", "m.scn", "--report", "none/m.html"],
+        &["infer", "m.csv", "-o", "m.json", "--report", "none/m.html"],
     ] {
         let said = place.call(words);
         assert_eq!(said.code, Some(2), "{words:?}");
@@ -229,6 +234,106 @@ fn a_missing_folder_is_named_and_no_file_is_left() {
         assert!(said.err.starts_with(title), "{}", said.err);
     }
     assert!(!place.path("none").exists());
+}
+
+/// Eight people go through a door, 1.2 m/s each, with a hair's breadth between the crossings of the first two.
+fn through_a_door() -> Place {
+    let scene = "horizon = 1 s\nstep = 0.02 s\nscene { wall (2, -3) -- (2, -0.6)\n wall (2, 0.6) -- (2, 3)\n \
+        obstacle column: circle (0.5, 2) radius 0.3 m\n line door: (2, -0.6) -- (2, 0.6)\n \
+        region hall: rect (-4, -3) .. (2, 3) }\n";
+    let mut table = "time,id,x,y\n".to_owned();
+    for frame in 0..30 {
+        for person in 0..8 {
+            let (time, late) = (0.2 * f64::from(frame), 0.4 * f64::from(person));
+            let x = 1.2 * (time - late);
+            let y = if person % 2 == 0 { 0.2 } else { -0.2 };
+            table += &format!("{time:.1},{},{x:.3},{y}\n", person + 1);
+        }
+    }
+    Place::new(&[("door.scn", scene), ("it's <b>\"ü.csv", &table)])
+}
+
+#[test]
+fn inferred_traces_are_played_and_drawn() {
+    let place = through_a_door();
+    let words = ["infer", "it's <b>\"ü.csv", "-o", "i.json", "--report", "i.html"];
+    let scene = ["--motion", "social-force", "--scene", "door.scn"];
+    let said = place.call(&[&words[..], &scene].concat());
+    assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{}", said.err);
+    let page = std::fs::read_to_string(place.path("i.html")).unwrap();
+    assert!(!page.contains("<b>"), "the name of the file is a text");
+    assert!(page.contains("<td>traces</td><td>8</td>") && page.contains("<td>IDF1</td><td>100 %</td>"));
+    let data = data(&page);
+    let trace = &data["traces"][0];
+    assert_eq!(
+        (&trace["spacing"], &trace["frames"], list(trace, "tracks").len()),
+        (&0.2.into(), &30.into(), 8)
+    );
+    assert_eq!(data["entries"][0]["label"], "recording");
+    assert_eq!(list(&data["scenes"][0], "walls").len(), 2);
+    // Members of groups of the file of results have their groups in the player.
+    let json: Value = serde_json::from_str(&std::fs::read_to_string(place.path("i.json")).unwrap()).unwrap();
+    let joint = list(&json, "groups").iter().any(|group| list(group, "members").len() > 1);
+    let is_some = list(trace, "memberships").iter().any(|one| !one[2].is_null());
+    assert_eq!(is_some, joint);
+    insta::assert_snapshot!("page_crowd", element(&page, "<section id=\"crowd\"", "</section>"));
+    let said = place.call(&["infer", "it's <b>\"ü.csv", "-o", "i.html", "--report", "i.html"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("two results are to be written to `i.html`"), "{}", said.err);
+}
+
+#[test]
+fn a_replay_with_advice_is_played_beside_its_advice() {
+    let place = Place::new(&[]);
+    let path = place.path("a.html");
+    let words = ["models/square.scn", "properties/square.bltl", "--replay", "here", "--total-trials", "200"];
+    let page = |more: &[&str]| {
+        let call = [&["advise"][..], &words, more, &["--report", path.to_str().unwrap()]].concat();
+        let said = at_root(&call);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        (said.out, std::fs::read_to_string(&path).unwrap())
+    };
+    let (lines, recorded) = page(&["--from", "4s", "--to", "6s"]);
+    let cycles: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let table = element(&recorded, "<tbody>", "</tbody>");
+    assert_eq!(table.matches("<tr>").count(), cycles.len());
+    for cycle in cycles.iter().filter(|cycle| !cycle["move"].is_null()) {
+        let (status, chosen) = (cycle["status"].as_str().unwrap(), cycle["move"].as_str().unwrap());
+        assert!(table.contains(&format!("<td>{status}</td><td>{chosen}</td>")), "{cycle}");
+    }
+    let named = |page: &str| -> Vec<String> {
+        let tracks = data(page)["traces"][0]["tracks"].as_array().unwrap().clone();
+        tracks.iter().map(|track| track["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(
+        named(&recorded).contains(&"user".to_owned()) && named(&recorded).contains(&"person[1]".to_owned())
+    );
+    assert_eq!(data(&recorded)["entries"][0]["label"], "recording, from 4 s on");
+    let (_, followed) = page(&["--from", "4s", "--to", "6s", "--follow"]);
+    assert!(named(&followed).contains(&"user as recorded".to_owned()));
+    assert!(followed.contains("<td>as advised</td>"));
+    assert!(!followed.contains("id=\"crowd\""), "the user would count twice");
+}
+
+#[test]
+fn texts_and_results_are_linked() {
+    let place = meeting(&format!("{NEAR}check P(apart) <= 0.99\n"));
+    let (_, page) = checked(&place, &[]);
+    let ids: Vec<&str> = page.split(" id=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    let unique: std::collections::BTreeSet<&&str> = ids.iter().collect();
+    assert_eq!(unique.len(), ids.len(), "{ids:?}");
+    for target in page.split("href=\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(ids.contains(&target), "nothing has the anchor {target}");
+    }
+    // A property leads to its first result, a query to its own, and each result to its line.
+    assert!(page.contains("<a href=\"#result-0\">apart</a>"));
+    for (number, line) in [(0, 3), (1, 4)] {
+        assert!(page.contains(&format!("<a id=\"line-1-{line}\" href=\"#result-{number}\">")), "{line}");
+        assert!(page.contains(&format!("<a href=\"#line-1-{line}\">m.bltl:{line}</a>")), "{line}");
+    }
+    for name in ["user", "oncoming", "east"] {
+        assert!(page.contains(&format!("<a href=\"#player\">{name}</a>")), "{name}");
+    }
 }
 
 /// Where there are Chromium and Node.js, a page is played: see `tests/browser/page.mjs`.

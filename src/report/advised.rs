@@ -38,7 +38,7 @@ pub struct Advised {
 /// The page.
 pub fn to_page<'a>(advised: Advised, sources: &'a [Source]) -> Page<'a> {
     let (walks, unnamed) = walks(&advised);
-    let Advised { title, scene, seed, cycles, end, .. } = advised;
+    let Advised { title, scene, seed, cycles, followed, end, .. } = advised;
     let trace = recorded(&title, scene, &walks);
     let mut tables = vec![cycles_table(&cycles)];
     tables.extend(end.map(|[advised, recorded]| ends_table(&advised, &recorded)));
@@ -57,6 +57,7 @@ pub fn to_page<'a>(advised: Advised, sources: &'a [Source]) -> Page<'a> {
         sources,
         tables,
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
+        without_crowd: !followed.is_empty(),
     }
 }
 

@@ -50,6 +50,8 @@ pub struct Page<'a> {
     pub tables: Vec<Table>,
     /// Traces for the player.
     pub traces: Traces,
+    /// Whether somebody is in the traces twice, which no figure of a crowd is to count.
+    pub without_crowd: bool,
 }
 
 /// A table of texts.
@@ -94,7 +96,7 @@ pub fn render(run: &CallResult) -> String {
 
 /// A page.
 pub fn page(page: Page<'_>) -> String {
-    let Page { run, sources, mut tables, traces } = page;
+    let Page { run, sources, mut tables, traces, without_crowd } = page;
     for table in &mut tables {
         let more = table.rows.len().saturating_sub(MOST_ROWS) as u64;
         if more > 0 {
@@ -112,7 +114,7 @@ pub fn page(page: Page<'_>) -> String {
     let groups: Vec<&[(usize, &QueryResult)]> =
         numbered.chunk_by(|(_, a), (_, b)| text::same_sweep(a, b)).collect();
     let asked: Vec<&AskedQuery> = groups.iter().map(|group| &group[0].1.asked).collect();
-    let (crowds, crowds_note) = crowd::crowds(&run, &traces.list);
+    let (crowds, crowds_note) = crowd::crowds(&run, if without_crowd { &[] } else { &traces.list });
     let scenarios: Vec<_> = traces.list.iter().map(|trace| Arc::clone(&trace.scenario)).collect();
     let player = Player::of(&run, traces);
     let linked = if player.is_some() { scenarios.as_slice() } else { &[] };

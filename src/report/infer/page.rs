@@ -27,6 +27,7 @@ pub fn to_page<'a>(report: &InferredFile, scene: Scene, sources: &'a [Source]) -
             .filter(|table| !table.rows.is_empty())
             .collect(),
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
+        without_crowd: false,
     }
 }
 

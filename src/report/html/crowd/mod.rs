@@ -7,6 +7,8 @@ mod moments;
 mod passage;
 mod plan;
 mod speed_density;
+#[cfg(test)]
+mod tests;
 
 use crate::base::tick::Clock;
 use crate::engine::outcome::CallResult;
