@@ -115,9 +115,8 @@ impl FittedModel {
         }
         let _ = writeln!(out, "\n{}", self.score());
         let named = [("fitted to", &self.found.fitted), ("held out", &self.found.held_out)];
-        let mut rows: Vec<_> = (named.iter())
-            .filter_map(|(name, of)| of.as_ref().map(|of| self.comparison(name, of)))
-            .collect();
+        let mut rows: Vec<_> =
+            (named.iter()).filter_map(|(name, of)| of.as_ref().map(|of| self.comparison(name, of))).collect();
         if let Some((name, Some(of))) = &self.test {
             rows.push(self.comparison(name, of));
         }

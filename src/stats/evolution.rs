@@ -97,8 +97,10 @@ impl Evolution {
         let damping = 1.0 + 2.0 * math::at_least(excess, 0.0) + c_sigma;
         let c_path = (4.0 + mass / size) / (size + 4.0 + 2.0 * mass / size);
         let c_one = 2.0 / ((size + 1.3) * (size + 1.3) + mass);
-        let c_rank =
-            math::at_most(2.0 * (mass - 2.0 + 1.0 / mass) / ((size + 2.0) * (size + 2.0) + mass), 1.0 - c_one);
+        let c_rank = math::at_most(
+            2.0 * (mass - 2.0 + 1.0 / mass) / ((size + 2.0) * (size + 2.0) + mass),
+            1.0 - c_one,
+        );
         let expected = size.sqrt() * (1.0 - 1.0 / (4.0 * size) + 1.0 / (21.0 * size * size));
 
         let steps: Vec<Vec<f64>> = (order.iter().take(self.weights.len()))

@@ -30,11 +30,8 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
     let kind = arguments.kind.clone().or_else(|| user_kind(replay)).unwrap_or_default();
     let base = replay.base_of(&kind);
     let own = replay.with_kind(&kind)?;
-    let counting = Counting {
-        trials: arguments.trials,
-        seed: arguments.seed,
-        by_properties: !arguments.by.is_empty(),
-    };
+    let counting =
+        Counting { trials: arguments.trials, seed: arguments.seed, by_properties: !arguments.by.is_empty() };
     let instants = eligible(&own, call.instants.clone(), own.recording.step(), arguments.speed, PREDICTED);
     let cases = Cases::new(&own, &instants, counting, threads)?;
     if cases.persons.len() < FEWEST {
@@ -102,10 +99,7 @@ fn parameters(names: &[String]) -> Result<Vec<Fitted>, Diagnostic> {
         let Some(one) = known.iter().find(|one| one.name() == name) else {
             let error = complaint::argument(
                 format!("`--parameters {name}`: there is no parameter `{name}` that can be fitted"),
-                format!(
-                    "choose from {}",
-                    known.iter().map(|one| one.name()).collect::<Vec<_>>().join(", ")
-                ),
+                format!("choose from {}", known.iter().map(|one| one.name()).collect::<Vec<_>>().join(", ")),
             );
             return Err(error);
         };
@@ -144,7 +138,8 @@ fn tested(
     let tracks = first_tracks(input.scenario).unwrap_or_default();
     let placeless = |errors: Vec<Diagnostic>| {
         // Their places are in files that this call does not show.
-        let one = |error: Diagnostic| Diagnostic::placeless(error.code, format!("{scenario}: {}", error.title));
+        let one =
+            |error: Diagnostic| Diagnostic::placeless(error.code, format!("{scenario}: {}", error.title));
         errors.into_iter().map(one).collect::<Vec<_>>()
     };
     let velocity: Velocity = arguments.velocity;
@@ -155,11 +150,8 @@ fn tested(
     };
     let everything = replay.instants(call.every, (f64::NEG_INFINITY, f64::INFINITY));
     let instants = eligible(&replay, everything, replay.recording.step(), arguments.speed, PREDICTED);
-    let counting = Counting {
-        trials: arguments.trials,
-        seed: arguments.seed,
-        by_properties: !arguments.by.is_empty(),
-    };
+    let counting =
+        Counting { trials: arguments.trials, seed: arguments.seed, by_properties: !arguments.by.is_empty() };
     let cases = Cases::new(&replay, &instants, counting, &call.threads).map_err(placeless)?;
     Ok(Comparison::of(&cases, found, options, (&call.threads, drivers)))
 }

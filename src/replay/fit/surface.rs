@@ -29,8 +29,9 @@ impl Surface {
         let centre: Vec<f64> =
             (0..n).map(|i| places.iter().map(|place| place[i]).sum::<f64>() / count).collect();
         let square = |i: usize, place: &Vec<f64>| (place[i] - centre[i]) * (place[i] - centre[i]);
-        let scale: Vec<f64> =
-            (0..n).map(|i| (places.iter().map(|place| square(i, place)).sum::<f64>() / count).sqrt()).collect();
+        let scale: Vec<f64> = (0..n)
+            .map(|i| (places.iter().map(|place| square(i, place)).sum::<f64>() / count).sqrt())
+            .collect();
         let rows: Vec<Vec<f64>> = places
             .iter()
             .map(|place| {
@@ -45,8 +46,7 @@ impl Surface {
             .collect();
         let size = Self::terms(n);
         let product = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
-        let normal: Vec<Vec<f64>> =
-            (0..size).map(|i| (0..size).map(|j| product(i, j)).collect()).collect();
+        let normal: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| product(i, j)).collect()).collect();
         Some(Self { factor: cholesky(&normal)?, centre, scale, rows })
     }
 
