@@ -42,7 +42,7 @@ impl Folder for Disk<'_> {
 }
 
 /// The section, or that it is left out.
-pub fn section(data: Option<&Path>, trials: u64) -> Result<String, Box<dyn std::error::Error>> {
+pub(crate) fn section(data: Option<&Path>, trials: u64) -> Result<String, Box<dyn std::error::Error>> {
     let mut out = "\n## People who were recorded\n\n".to_owned();
     let Some(data) = data.filter(|data| data.join("seq_hotel/obsmat.txt").exists()) else {
         out.push_str(

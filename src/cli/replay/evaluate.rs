@@ -50,9 +50,10 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     let (mut found, mut realisms) = (Vec::new(), Vec::new());
     for kind in &kinds {
         found.push(evaluate(replay, kind, &instants, &options, (threads, &drivers))?);
-        realisms.push(match arguments.realism {
-            true => realism(replay, kind, &instants, options.seed, (threads, &drivers))?,
-            false => Vec::new(),
+        realisms.push(if arguments.realism {
+            realism(replay, kind, &instants, options.seed, (threads, &drivers))?
+        } else {
+            Vec::new()
         });
     }
     let persons = Persons::of(&instants);
