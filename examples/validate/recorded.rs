@@ -7,7 +7,8 @@ use smc::gait;
 use smc::library::{Folder, Names, parse};
 use smc::model::Scenario;
 use smc::replay::{
-    Beyond, CONSTANT, Displacement, Evaluating, PREDICTED, Predicted, Replay, Whose, eligible, evaluate,
+    Beyond, CONSTANT, Displacement, Evaluating, FEATURES, LANGEVIN, PREDICTED, PersonRealism, Predicted,
+    Replay, Whose, eligible, evaluate, realism,
 };
 use smc::route::Ways;
 use std::fmt::Write as _;
@@ -41,7 +42,7 @@ impl Folder for Disk<'_> {
 }
 
 /// The section, or that it is left out.
-pub fn section(data: Option<&Path>, trials: u64) -> Result<String, Box<dyn std::error::Error>> {
+pub(crate) fn section(data: Option<&Path>, trials: u64) -> Result<String, Box<dyn std::error::Error>> {
     let mut out = "\n## People who were recorded\n\n".to_owned();
     let Some(data) = data.filter(|data| data.join("seq_hotel/obsmat.txt").exists()) else {
         out.push_str(
@@ -55,9 +56,10 @@ pub fn section(data: Option<&Path>, trials: u64) -> Result<String, Box<dyn std::
          [replay.md](replay.md), chosen with `smc1` on hotel. ADE and FDE are the mean and the final distance, in m, \
          of the mean path after 4.8 s, and of the best of 20 paths. The shares are those of recorded positions in the 90 % \
          region after 1, 2 and 4.8 s. Skills are those of the Brier scores of \"somebody nearer than 0.5 m\" and \
-         \"0.8 m\" against the base rate.\n\n\
-         | recording, velocities | kind | ADE, FDE | best of 20 | in the region | skill 0.5 m | skill 0.8 m |\n\
-         | --- | --- | --- | --- | --- | --- | --- |\n",
+         \"0.8 m\" against the base rate. Realism is the mean log likelihood of the recorded speed, acceleration, distance \
+         to the nearest, time to collision and contact among 32 trials.\n\n\
+         | recording, velocities | kind | ADE, FDE | best of 20 | in the region | skill 0.5 m | skill 0.8 m | realism |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     let template = fs::read_to_string(MODEL)?;
     let laws = [
@@ -93,10 +95,17 @@ fn of_recording(
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
     let options = Evaluating { trials, seed: 0, beyond: Beyond::Onward };
     let mut out = String::new();
-    for kind in PRESETS.iter().map(|preset| preset.name).chain([CONSTANT]) {
+    for kind in PRESETS.iter().map(|preset| preset.name).chain([CONSTANT, LANGEVIN]) {
         eprintln!("{name} {} {kind}", velocity.name());
         let found = evaluate(&replay, kind, &instants, &options, (&threads, &drivers)).map_err(refused)?;
-        writeln!(out, "| {name}, {} | {kind} | {} |", velocity.name(), cells(&found))?;
+        let real = realism(&replay, kind, &instants, options.seed, (&threads, &drivers)).map_err(refused)?;
+        writeln!(
+            out,
+            "| {name}, {} | {kind} | {} | {} |",
+            velocity.name(),
+            cells(&found),
+            likelihoods(&real)
+        )?;
     }
     Ok(out)
 }
@@ -129,4 +138,11 @@ fn cells(found: &Predicted) -> String {
         skill(0),
         skill(1)
     )
+}
+
+/// The mean logarithm of each number of the recorded motion.
+fn likelihoods(found: &[PersonRealism]) -> String {
+    let steps: u64 = found.iter().map(|(_, _, steps)| steps).sum();
+    let mean = |k: usize| found.iter().map(|(_, sums, _)| sums[k]).sum::<f64>() / steps as f64;
+    (0..FEATURES.len()).map(|k| format!("{:.2}", mean(k))).collect::<Vec<_>>().join(", ")
 }

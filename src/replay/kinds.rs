@@ -11,11 +11,16 @@ use crate::syntax::source::{Source, SourceId, Span};
 /// The kind without forces: everybody keeps the velocity.
 pub const CONSTANT: &str = "constant";
 
+/// The kind of a plain Langevin walker: no forces, and a noise of 0.2 m/s around the recorded velocity (Corbetta et al. 2017
+/// measured fluctuations of this size).
+pub const LANGEVIN: &str = "langevin";
+const LANGEVIN_NOISE: f64 = 0.2;
+
 /// Fields of agents that would change the velocity.
 const CHANGING: [&str; 4] = ["heading", "speed", "route", "noise"];
 
 /// A scenario all of whose people have the kind of a name: one that it declares, a preset or the beginning of the name of
-/// one, or `constant`. Where the kind is not declared, its text is a source of its own.
+/// one, `constant` or `langevin`. Where the kind is not declared, its text is a source of its own.
 ///
 /// # Errors
 /// Where there is no such kind.
@@ -30,13 +35,16 @@ fn with_kind(
         .collect();
     let added = match (declared.contains(&name), preset(name)) {
         (true, _) => None,
-        (false, _) if name == CONSTANT => Some(format!(
-            "kind {name}: sfm preset helbing2000 {{ A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)  noise = 0 m/s }}\n"
-        )),
+        (false, _) if is_free(name) => {
+            let noise = if name == LANGEVIN { LANGEVIN_NOISE } else { 0.0 };
+            Some(format!(
+                "kind {name}: sfm preset helbing2000 {{ A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)  noise = {noise} m/s }}\n"
+            ))
+        }
         (false, Some(preset)) => Some(format!("kind {name}: sfm preset {preset} {{ }}\n")),
         (false, None) => {
             let presets = PRESETS.iter().map(|preset| preset.name);
-            let known: Vec<&str> = declared.into_iter().chain(presets).chain([CONSTANT]).collect();
+            let known: Vec<&str> = declared.into_iter().chain(presets).chain([CONSTANT, LANGEVIN]).collect();
             let said = format!("there is no kind `{name}`");
             return Err(
                 Diagnostic::placeless(Code::E0705, said).hint(format!("the kinds are {}", known.join(", ")))
@@ -55,11 +63,16 @@ fn with_kind(
             _ => continue,
         };
         name.clone_into(&mut kind.name);
-        if name == CONSTANT {
+        if is_free(name) {
             body.retain(|field| !CHANGING.contains(&field.name.name.as_str()));
         }
     }
     Ok((changed, source))
+}
+
+/// Whether people of a kind feel nobody.
+fn is_free(name: &str) -> bool {
+    matches!(name, CONSTANT | LANGEVIN)
 }
 
 impl Replay {

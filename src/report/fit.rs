@@ -60,11 +60,15 @@ impl FittedModel {
         let (people, kind): (Vec<&Candidate>, Vec<&Candidate>) =
             self.found.parameters.iter().partition(|one| matches!(one.parameter.name(), "heading" | "speed"));
         let mut out = format!("kind fitted: {} {{\n", self.base);
-        kind.iter().for_each(|one| _ = writeln!(out, "  {}", field(one)));
+        for one in kind {
+            let _ = writeln!(out, "  {}", field(one));
+        }
         out.push_str("}\n");
         if !people.is_empty() {
             let _ = writeln!(out, "// Fields of all people that start `from {}`:", self.recording);
-            people.iter().for_each(|one| _ = writeln!(out, "//   {}", field(one)));
+            for one in people {
+                let _ = writeln!(out, "//   {}", field(one));
+            }
         }
         out
     }
@@ -124,9 +128,9 @@ impl FittedModel {
             let _ = writeln!(out, "  {line}");
         }
         let _ = writeln!(out, "\n{}", self.block());
-        let _ = write!(
+        let _ = writeln!(
             out,
-            "Brackets: {} % intervals (bootstrap over persons).\n",
+            "Brackets: {} % intervals (bootstrap over persons).",
             plain(100.0 * self.confidence)
         );
         out

@@ -1,4 +1,4 @@
-//! Minimisation without derivatives: the (mu/mu_w, lambda)-CMA-ES (Hansen 2016, "The CMA evolution strategy: a tutorial",
+//! Minimisation without derivatives: the `(mu/mu_w, lambda)`-CMA-ES (Hansen 2016, "The CMA evolution strategy: a tutorial",
 //! arXiv 1604.00772), with the default parameters of its table 1 and without negative weights.
 //!
 //! A generation is drawn with [`Evolution::draw`] and ranked with [`Evolution::learn`]. Each draw has an address (seed,

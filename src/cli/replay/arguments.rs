@@ -73,10 +73,13 @@ pub(in crate::cli) struct MonitorCommand {
 pub(in crate::cli) struct EvaluateCommand {
     #[command(flatten)]
     pub(super) replayed: Replayed,
-    /// Kinds that are compared: kinds of the model, presets, or `constant` (nobody changes the velocity); by default the kind of
-    /// the user and `constant`.
+    /// Kinds that are compared: kinds of the model, presets, `constant` (nobody changes the velocity) or `langevin` (it only
+    /// fluctuates); by default the kind of the user and `constant`, with `--realism` also `langevin`.
     #[arg(long, value_name = "KIND,…", value_delimiter = ',')]
     pub(super) kinds: Vec<String>,
+    /// Also score how likely the recorded speeds, accelerations, distances, times to collision and contacts are among 32 trials.
+    #[arg(long)]
+    pub(super) realism: bool,
     /// Trials of each instant.
     #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count)]
     pub(super) trials: u64,

@@ -7,7 +7,8 @@ use crate::cli::terminal::Colors;
 use crate::gait;
 use crate::model::Scenario;
 use crate::replay::{
-    CONSTANT, Evaluating, Fit, HORIZONS, Instant, PREDICTED, Predicted, eligible, evaluate, user_kind,
+    CONSTANT, Evaluating, FEATURES, Fit, HORIZONS, Instant, LANGEVIN, PREDICTED, PersonRealism, Predicted,
+    eligible, evaluate, realism, user_kind,
 };
 use crate::report::evaluate::{
     Coverage, Displacement, Evaluated, EvaluatedKind, EvaluatedProperty, to_json, to_svg, to_text, write_csv,
@@ -36,6 +37,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     if kinds.is_empty() {
         kinds.extend(user_kind(replay));
         kinds.push(CONSTANT.to_owned());
+        kinds.extend(arguments.realism.then(|| LANGEVIN.to_owned()));
     }
     kinds.dedup();
     let options = Evaluating {
@@ -45,9 +47,14 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     };
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
-    let mut found = Vec::new();
+    let (mut found, mut realisms) = (Vec::new(), Vec::new());
     for kind in &kinds {
         found.push(evaluate(replay, kind, &instants, &options, (threads, &drivers))?);
+        realisms.push(if arguments.realism {
+            realism(replay, kind, &instants, options.seed, (threads, &drivers))?
+        } else {
+            Vec::new()
+        });
     }
     let persons = Persons::of(&instants);
     let bootstrap = Bootstrap {
@@ -58,7 +65,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     };
     let constant = kinds.iter().position(|kind| kind == CONSTANT).map(|k| &found[k]);
     let names = &replay.formulas.names;
-    let of_kind = |(kind, own): (&String, &Predicted)| EvaluatedKind {
+    let of_kind = |((kind, own), real): ((&String, &Predicted), &Vec<PersonRealism>)| EvaluatedKind {
         name: kind.clone(),
         properties: (0..names.len())
             .map(|k| EvaluatedProperty {
@@ -69,6 +76,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
             .collect(),
         displacement: Some(persons.displacement(own, &bootstrap)),
         coverage: persons.coverage(own, &bootstrap),
+        realism: persons.realism(real, &bootstrap),
     };
     let evaluated = Evaluated {
         model: arguments.replayed.model.scenario.clone(),
@@ -83,7 +91,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         confidence: bootstrap.confidence,
         instants: instants.len() as u64,
         persons: bootstrap.persons as u64,
-        kinds: kinds.iter().zip(&found).map(of_kind).collect(),
+        kinds: kinds.iter().zip(&found).zip(&realisms).map(of_kind).collect(),
     };
     match arguments.format {
         EvaluateFormat::Text => Ok(to_text(&evaluated)),
@@ -158,6 +166,23 @@ impl Persons {
             best_fde: mean(|one| one.best_last),
             collisions: mean(|one| one.collisions),
         }
+    }
+
+    /// The mean logarithm of each number; nothing where it was not asked for.
+    fn realism(
+        &self,
+        found: &[PersonRealism],
+        bootstrap: &Bootstrap,
+    ) -> Vec<(&'static str, Option<Estimate>)> {
+        let of = |(k, name): (usize, &&'static str)| {
+            let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
+            for (person, sums, steps) in found {
+                let part = &mut parts[self.number(*person) as usize];
+                (part[0], part[1]) = (part[0] + sums[k], part[1] + *steps as f64);
+            }
+            (*name, bootstrap.estimate(ratio(&parts)))
+        };
+        if found.is_empty() { Vec::new() } else { FEATURES.iter().enumerate().map(of).collect() }
     }
 
     fn coverage(&self, found: &Predicted, bootstrap: &Bootstrap) -> Vec<Coverage> {

@@ -39,7 +39,7 @@ pub type Parts = Vec<[f64; 2]>;
 
 /// The instants of a model with a recording, compiled.
 pub struct Cases {
-    cases: Vec<Case>,
+    instants: Vec<Case>,
     /// Ids of the persons that count, ascending; [`Parts`] have this order.
     pub persons: Vec<u32>,
     counting: Counting,
@@ -88,18 +88,19 @@ impl Cases {
         let number: BTreeMap<u32, usize> = persons.iter().copied().zip(0..).collect();
         let one = |(at, group): &(u64, Vec<Instant>)| case(replay, group, (*at, &number), counting);
         let cases = threads.map(&groups, one).into_iter().collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { cases: cases.into_iter().flatten().collect(), persons, counting })
+        Ok(Self { instants: cases.into_iter().flatten().collect(), persons, counting })
     }
 
     /// Where searches for some parameters begin, SI units.
     pub(super) fn starts(&self, fitted: &[Fitted]) -> Vec<f64> {
-        let agents = self.cases.first().map_or(&[][..], |one| &one.study.worlds[one.world].scenario.agents);
+        let agents =
+            self.instants.first().map_or(&[][..], |one| &one.study.worlds[one.world].scenario.agents);
         fitted.iter().map(|one| one.start(agents)).collect()
     }
 
     /// The loss with some parameters, SI units; without any that of the model as it is.
     pub fn losses(&self, values: &[(Fitted, f64)], threads: &Threads, drivers: &MakeDrivers) -> Parts {
-        let found = threads.map(&self.cases, |case| case.losses(values, self.counting, drivers));
+        let found = threads.map(&self.instants, |case| case.losses(values, self.counting, drivers));
         let mut parts = vec![[0.0, 0.0]; self.persons.len()];
         for (person, loss) in found.into_iter().flatten() {
             parts[person][0] += loss;
@@ -140,30 +141,27 @@ fn case(
         persons.push(*person);
         recorded.push(times.iter().map(then).collect());
     }
-    let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
-    let truths = match counting.by_properties {
-        true => happened(replay, user, (world, &columns), Beyond::Onward),
-        false => Vec::new(),
-    };
-    Ok(Some(Case {
-        world: index,
-        columns: if counting.by_properties { columns } else { Vec::new() },
-        truths,
-        agents: if counting.by_properties { Vec::new() } else { agents },
-        persons: if counting.by_properties {
-            number.get(&user.person).copied().into_iter().collect()
-        } else {
-            persons
-        },
-        ticks: if counting.by_properties {
-            Vec::new()
-        } else {
-            times.iter().map(|time| (time / dt).round() as u64).collect()
-        },
-        recorded,
-        series: Series { seed: counting.seed, branch: (at & 0xffff) as u16 },
-        study,
-    }))
+    let series = Series { seed: counting.seed, branch: (at & 0xffff) as u16 };
+    if counting.by_properties {
+        let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
+        let truths = happened(replay, user, (world, &columns), Beyond::Onward);
+        let persons = number.get(&user.person).copied().into_iter().collect();
+        let (agents, ticks, recorded) = (Vec::new(), Vec::new(), Vec::new());
+        return Ok(Some(Case {
+            world: index,
+            columns,
+            truths,
+            agents,
+            persons,
+            ticks,
+            recorded,
+            series,
+            study,
+        }));
+    }
+    let ticks = times.iter().map(|time| (time / dt).round() as u64).collect();
+    let (columns, truths) = (Vec::new(), Vec::new());
+    Ok(Some(Case { world: index, columns, truths, agents, persons, ticks, recorded, series, study }))
 }
 
 impl Case {
@@ -176,7 +174,9 @@ impl Case {
     ) -> Vec<(usize, f64)> {
         let mut study = self.study.clone();
         let scenario = Arc::make_mut(&mut study.worlds[self.world].scenario);
-        values.iter().for_each(|(one, value)| one.set(scenario, *value));
+        for (one, value) in values {
+            one.set(scenario, *value);
+        }
         let Some(prepared) = PreparedWorld::of(&study, self.world, counting.seed, drivers) else {
             return Vec::new();
         };

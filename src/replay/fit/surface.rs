@@ -8,7 +8,7 @@
 pub(super) struct Surface {
     centre: Vec<f64>,
     scale: Vec<f64>,
-    /// The terms 1, x_i, x_i x_j of each candidate.
+    /// The terms `1`, `x_i` and `x_i x_j` of each candidate.
     rows: Vec<Vec<f64>>,
     /// Cholesky factor of the sum of products of terms.
     factor: Vec<Vec<f64>>,

@@ -33,6 +33,7 @@ fn kind(kind: &EvaluatedKind) -> Value {
         "properties": kind.properties.iter().map(property).collect::<Vec<_>>(),
         "displacement": kind.displacement.as_ref().map(displacement),
         "coverage": kind.coverage.iter().map(coverage).collect::<Vec<_>>(),
+        "realism": kind.realism.iter().map(|(name, found)| ((*name).to_owned(), json!(found))).collect::<serde_json::Map<_, _>>(),
     })
 }
 

@@ -58,6 +58,8 @@ pub struct EvaluatedKind {
     pub displacement: Option<Displacement>,
     /// How well recorded positions fit predicted ones, after some times.
     pub coverage: Vec<Coverage>,
+    /// The mean logarithm of the likelihood of what was recorded, number by number, if it was asked for.
+    pub realism: Vec<(&'static str, Option<Estimate>)>,
 }
 
 /// Recorded positions among those that trials predict.

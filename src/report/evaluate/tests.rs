@@ -33,6 +33,7 @@ fn evaluated(names: [&str; 2], property: &str) -> Evaluated {
             EvaluatedProperty { name: "never resolved".to_owned(), unresolved: 27, quality: None },
         ],
         displacement,
+        realism: Vec::new(),
         coverage: match k {
             0 => vec![Coverage { seconds: 4.8, share: estimate(0.875), log_density: estimate(0.25) }],
             _ => Vec::new(),

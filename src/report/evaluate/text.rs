@@ -35,6 +35,7 @@ pub fn to_text(report: &Evaluated) -> String {
     }
     distances(&mut out, &report.kinds);
     coverage(&mut out, &report.kinds);
+    realism(&mut out, &report.kinds);
     let _ = writeln!(
         out,
         "\nBrier score: mean squared difference of probability and outcome; 0 is best.\n\
@@ -163,5 +164,21 @@ fn coverage(out: &mut String, kinds: &[EvaluatedKind]) {
         write(out, ["kind", "after s", "share", "log density"], rows);
         let _ =
             writeln!(out, "  log density: mean logarithm of the density of the predicted positions, 1/m^2");
+    }
+}
+
+/// How likely the recorded motion is.
+fn realism(out: &mut String, kinds: &[EvaluatedKind]) {
+    let row = |kind: &EvaluatedKind| match kind.realism.as_slice() {
+        [(_, a), (_, b), (_, c), (_, d), (_, e)] => {
+            let [a, b, c, d, e] = [a, b, c, d, e].map(|found| maybe(found.as_ref()));
+            Some([kind.name.clone(), a, b, c, d, e])
+        }
+        _ => None,
+    };
+    let rows: Vec<_> = kinds.iter().filter_map(row).collect();
+    if !rows.is_empty() {
+        let _ = writeln!(out, "\nmean log likelihood of the recorded motion among 32 trials; 0 is best");
+        write(out, ["kind", "speed", "acceleration", "nearest", "time to collision", "contact"], rows);
     }
 }
