@@ -83,7 +83,7 @@ fn spacing(walks: &[Walk]) -> f64 {
     let pairs = walks.iter().flat_map(|walk| walk.points.windows(2).map(|pair| pair[1].0 - pair[0].0));
     let mut times: Vec<f64> = pairs.filter(|time| *time > CLOSE).collect();
     times.sort_by(f64::total_cmp);
-    let usual = times.get(times.len() / 2).map_or(SPACING, |time| (time / CLOSE).round() * CLOSE);
+    let usual = times.get(times.len() / 2).map_or(SPACING, |time| (time * 1e6).round() / 1e6);
     usual.max(SPACING)
 }
 

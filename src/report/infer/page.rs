@@ -4,9 +4,9 @@ use super::InferredFile;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::{Traces, Walk, recorded};
 use crate::model::Scene;
-use crate::perception::{Inference, Padding};
+use crate::perception::Inference;
 use crate::report::html::{Page, Table};
-use crate::report::number::{brief, count, plain};
+use crate::report::number::{brief, count};
 use crate::syntax::source::Source;
 use std::collections::BTreeMap;
 
@@ -22,10 +22,7 @@ pub fn to_page<'a>(report: &InferredFile, scene: Scene, sources: &'a [Source]) -
             ..CallResult::default()
         },
         sources,
-        tables: vec![counts(found), scores(found), settings(report)]
-            .into_iter()
-            .filter(|table| !table.rows.is_empty())
-            .collect(),
+        tables: [counts(found)].into_iter().chain(scores(found)).collect(),
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
         without_crowd: false,
     }
@@ -82,7 +79,8 @@ fn counts(found: &Inference) -> Table {
     }
 }
 
-fn scores(found: &Inference) -> Table {
+/// None where there is nothing to agree with.
+fn scores(found: &Inference) -> Option<Table> {
     let mut rows = Vec::new();
     let whole = |number: usize| count(number as u64);
     let percent = |share: f64| format!("{} %", brief(100.0 * share));
@@ -106,28 +104,7 @@ fn scores(found: &Inference) -> Table {
             row("recall of pairs in a group", percent(score.recall)),
         ]);
     }
-    Table {
-        title: "Agreement with the ids and groups of the recording".to_owned(),
-        note: String::new(),
-        columns: vec!["score", "value"],
-        rows,
-    }
-}
-
-fn settings(report: &InferredFile) -> Table {
-    let (tracking, clustering) = (&report.options.tracking, &report.options.clustering);
-    let kind = report.kind.map_or(String::new(), |kind| format!(" of {kind}"));
-    let scene = report.scene.map_or(String::new(), |scene| format!(" in {scene}"));
-    let mut rows = vec![
-        row("motion", format!("{}{kind}{scene}", report.motion)),
-        row("velocities", report.velocity.name().to_owned()),
-        row("ids", if report.options.is_anonymous { "withheld" } else { "used" }.to_owned()),
-        row("largest distance from the projection", format!("{} m", plain(tracking.threshold))),
-        row("longest projection", format!("{} s", plain(tracking.longest))),
-        row("largest distance from the centroid of a group", format!("{} m", plain(clustering.threshold))),
-    ];
-    if tracking.padding == Padding::Printed {
-        rows.push(row("padding", "printed".to_owned()));
-    }
-    Table { title: "Settings".to_owned(), note: String::new(), columns: vec!["setting", "value"], rows }
+    let title = "Agreement with the ids and groups of the recording".to_owned();
+    let table = Table { title, note: String::new(), columns: vec!["score", "value"], rows };
+    (!table.rows.is_empty()).then_some(table)
 }

@@ -38,7 +38,8 @@ impl Plan {
             Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
             Obstacle::Solid(shape) => Some(shape.bounds()),
         });
-        let corners = barriers.chain([walked]).flat_map(|bounds| [bounds.low, bounds.high]);
+        let lines = scene.lines.iter().filter_map(|line| Bounds::around([line.segment.a, line.segment.b]));
+        let corners = barriers.chain(lines).chain([walked]).flat_map(|bounds| [bounds.low, bounds.high]);
         let inner = Bounds::around(corners)?;
         let size = inner.high - inner.low;
         let room = Vec2::repeat((0.03 * size.x.max(size.y)).max(0.2));
