@@ -3,11 +3,10 @@
 #
 #   cargo build --release && sh docs/cookbook.sh [PROGRAM]
 #
-# PROGRAM is target/release/smc unless given. Commands that this program does not have are listed at the end.
+# PROGRAM is target/release/smc unless given.
 set -eu
 cd "$(dirname "$0")/.."
 program=${1:-target/release/smc}
-left_out=
 mkdir -p out docs/cookbook
 
 smc() { "$program" "$@" --color never; }
@@ -21,12 +20,6 @@ while IFS= read -r line <&3; do
   command=${line%% # exit code *}
   expected=0
   if [ "$command" != "$line" ]; then expected=${line##* # exit code }; fi
-  name=$(echo "$command" | cut -d ' ' -f 2)
-  if [ "${command%% *}" = smc ] && ! "$program" "$name" --help > /dev/null 2>&1; then
-    left_out="$left_out
-  $command"
-    continue
-  fi
   echo "\$ $command"
   code=0
   eval "$command" || code=$?
@@ -37,6 +30,5 @@ while IFS= read -r line <&3; do
 done 3< "$commands"
 
 for picture in $(sed -n 's|.*](cookbook/\(.*\.svg\))$|\1|p' docs/cookbook.md); do
-  if [ -e "out/$picture" ]; then cp "out/$picture" docs/cookbook/; fi
+  cp "out/$picture" docs/cookbook/
 done
-if [ -n "$left_out" ]; then echo "not run, because $program has no such command:$left_out"; fi

@@ -132,9 +132,11 @@ class Drawing {
   // A view: scene, trace, frame, who decided, and whether names and trails are shown.
   draw({ scene, trace, frame, deciders, names, trails }) {
     const { pen, inks } = this;
-    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    // All pixels: the size in CSS pixels need not be whole.
+    pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.fillStyle = inks.stage;
-    pen.fillRect(0, 0, this.size.width, this.size.height);
+    pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     pen.font = '12px system-ui, sans-serif';
     pen.lineJoin = 'round';
     this.scene(scene);

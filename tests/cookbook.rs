@@ -1,6 +1,6 @@
 //! The page `docs/cookbook.md`: its commands run, print what the page says, and write the pictures and tables it names.
 
-use crate::program::{Place, Said, at_root};
+use crate::program::{Place, Said};
 use std::fs::{copy, create_dir_all, read, read_dir, read_to_string};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -133,7 +133,7 @@ fn pictures<'p>(section: &Section<'p>) -> Vec<&'p str> {
 }
 
 /// Runs the commands of a block; what they print.
-fn printed(place: &Place, block: &Block<'_>, can_plot: bool) -> String {
+fn printed(place: &Place, block: &Block<'_>) -> String {
     let mut out = String::new();
     for text in &block.lines {
         let Line { words, to, code } = line(text);
@@ -141,10 +141,6 @@ fn printed(place: &Place, block: &Block<'_>, can_plot: bool) -> String {
             continue;
         }
         assert_eq!(words[0], "smc", "{text}");
-        if words[1] == "plot" && !can_plot {
-            eprintln!("SKIPPED: this program cannot plot: {text}");
-            continue;
-        }
         let words: Vec<&str> = words[1..].iter().map(String::as_str).collect();
         let said = Said::of(&place.command(&words).stdout(Stdio::piped()).output().unwrap());
         assert_eq!(said.code, Some(code), "{text}\n{}{}", said.out, said.err);
@@ -163,7 +159,6 @@ fn commands_of_the_cookbook_do_what_it_says() {
         copied(&root().join(folder), &place.path(folder));
     }
     create_dir_all(place.path("out")).unwrap();
-    let can_plot = at_root(&["plot", "--help"]).code == Some(0);
     let page = page();
     let sections = sections(&page);
     assert_eq!(sections.len(), 11, "ten tasks");
@@ -172,7 +167,7 @@ fn commands_of_the_cookbook_do_what_it_says() {
         for block in &section.blocks {
             match block.info.split_once(' ').unwrap_or((block.info, "")) {
                 ("sh", "") => {
-                    last = printed(&place, block, can_plot);
+                    last = printed(&place, block);
                     all += &last;
                 }
                 ("text", "") => occur(&block.lines, &last, title),
@@ -180,11 +175,10 @@ fn commands_of_the_cookbook_do_what_it_says() {
                 (_, file) => assert!(!file.is_empty(), "{title}: a block without a language or a file"),
             }
         }
-        let plotted = |name: &str| section.blocks.iter().any(|block| is_plotted(block, name));
         for name in named(section) {
             let path = place.path(&name);
-            assert!(path.is_file() || (!can_plot && plotted(&name)), "{title}: `{name}` is not written");
-            if is_table(&path) && path.is_file() {
+            assert!(path.is_file(), "{title}: `{name}` is not written");
+            if is_table(&path) {
                 all += &read_to_string(path).unwrap();
             }
         }
@@ -194,9 +188,6 @@ fn commands_of_the_cookbook_do_what_it_says() {
         }
         for name in pictures(section) {
             let written = format!("out/{name}");
-            if !can_plot && plotted(&written) {
-                continue;
-            }
             let picture = read(place.path(&written)).unwrap_or_else(|error| panic!("{written}: {error}"));
             assert!(picture.len() < LARGEST_PICTURE, "{name} has {} bytes", picture.len());
             let kept = read(root().join("docs/cookbook").join(name)).unwrap_or_default();
@@ -204,10 +195,6 @@ fn commands_of_the_cookbook_do_what_it_says() {
             assert!(String::from_utf8(picture).unwrap().contains("<text"), "{name} has no text");
         }
     }
-}
-
-fn is_plotted(block: &Block<'_>, name: &str) -> bool {
-    block.lines.iter().any(|line| line.starts_with("smc plot ") && line.ends_with(name))
 }
 
 fn is_table(path: &Path) -> bool {

@@ -350,17 +350,31 @@ fn a_page_works_in_a_browser() {
     let place = meeting(&NEAR.replace("> 0.3 m", "> 0 m"));
     let (report, _) = checked(&place, &[]);
     assert!(report["results"][0]["witnesses"][0]["trial"].as_u64() > Some(0), "{report}");
-    let model = |name: &str| format!("{}/models/{name}.scn", env!("CARGO_MANIFEST_DIR"));
-    for (words, page) in [
-        (["path", &model("plaza"), "--report"], "path.html"),
-        (["walk", &model("workplace"), "--report"], "walk.html"),
-    ] {
-        let said = place.call(&[&words[..], &[page]].concat());
-        assert_eq!(said.code, Some(0), "{}", said.err);
+    // Charts of a sweep and of a ranking, a distribution function, and how evidence grew.
+    let median = "estimate Q(0.5, time_until(user in east)) by fixed(trials = 40)";
+    let ranking = "rank moves of user by P(apart) within 0.2 confidence 90 %";
+    place.write("all.bltl", format!("{NEAR}{median}\n{ranking}\n").as_bytes());
+    let file = |name: &str| format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));
+    let (plaza, workplace) = (file("models/plaza.scn"), file("models/workplace.scn"));
+    let (square, seen) = (file("models/square.scn"), file("models/square.csv"));
+    let asked = file("properties/square.bltl");
+    let calls: [(&str, &[&str]); 5] = [
+        ("all.html", &["check", "m.scn", "all.bltl", "-q", "--set", "people=2,4", "--max-trials", "100"]),
+        ("path.html", &["path", &plaza]),
+        ("walk.html", &["walk", &workplace]),
+        ("infer.html", &["infer", &seen]),
+        (
+            "advise.html",
+            &["advise", &square, &asked, "--replay", "here", "--to", "2s", "--total-trials", "200"],
+        ),
+    ];
+    for (page, words) in calls {
+        let said = place.call(&[words, &["--report", page]].concat());
+        assert!(place.path(page).is_file(), "{words:?}\n{}", said.err);
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser/page.mjs");
     std::thread::scope(|scope| {
-        for page in ["m.html", "path.html", "walk.html"] {
+        for page in calls.iter().map(|(page, _)| *page).chain(["m.html"]) {
             let path = place.path(page);
             scope.spawn(move || {
                 let said = Command::new("node").arg(script).arg(browser).arg(path).output().unwrap();

@@ -34,6 +34,12 @@ function compare(most) {
   if (ends.length === 0) return null;
   const [[west, east], [south, north]] = [range(0), range(1)];
   const plan = found('barrier', 0, 0, width, height);
+  // A wall along a side of the plan is 2 pixels thick, and half of them are outside.
+  const isAlong = (axis, value) => scene.walls.some((wall) => wall[axis] === value && wall[axis + 2] === value);
+  plan.left += isAlong(0, west);
+  plan.right -= isAlong(0, east);
+  plan.low += isAlong(1, north);
+  plan.high -= isAlong(1, south);
   const scale = (plan.right - plan.left) / (east - west); // pixels of a millimetre
   const middle = (box) => [(box.left + box.right) / 2, (box.low + box.high) / 2];
   const [x0, y0] = middle(plan);
