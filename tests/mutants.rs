@@ -31,6 +31,7 @@ const PAIRS: [(&str, &str); 26] = [
     pair!("hotel"),
     pair!("hotel-any"),
     pair!("hotel-groups"),
+    pair!("hotel-laws"),
     pair!("leader"),
     pair!("overflow"),
     pair!("queue"),
