@@ -62,6 +62,7 @@ fn ours(study: &Study) -> (f64, f64) {
     let call = Call {
         branch: 0,
         explains: true,
+        shows_evidence: false,
         seed: 1,
         line: CommandLine::default(),
         only: Vec::new(),

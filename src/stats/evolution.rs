@@ -189,6 +189,17 @@ mod tests {
 
     /// The evaluations until the loss is below 1e-10; fails beyond a budget.
     fn evaluations(loss: impl Fn(&[f64]) -> f64, start: &[f64], seed: u64, budget: usize) -> usize {
+        let found = least(loss, start, seed, budget);
+        found.unwrap_or_else(|losses| panic!("{budget} evaluations, {losses:?}"))
+    }
+
+    /// The same; beyond the budget the losses of the last generation.
+    fn least(
+        loss: impl Fn(&[f64]) -> f64,
+        start: &[f64],
+        seed: u64,
+        budget: usize,
+    ) -> Result<usize, Vec<f64>> {
         let mut search = Evolution::new(start.to_vec(), 0.5, None, seed);
         let mut count = 0;
         loop {
@@ -196,9 +207,11 @@ mod tests {
             let losses: Vec<f64> = all.iter().map(|one| loss(one)).collect();
             count += all.len();
             if losses.iter().any(|loss| *loss < 1e-10) {
-                return count;
+                return Ok(count);
             }
-            assert!(count < budget, "{count} evaluations, {losses:?}");
+            if count >= budget {
+                return Err(losses);
+            }
             search.learn(&all, &losses);
         }
     }
@@ -219,10 +232,17 @@ mod tests {
             };
             x.windows(2).map(term).sum::<f64>()
         };
+        // In ten dimensions Rosenbrock's function has a second minimum, 3.9866 (Shang and Qiu 2006): a run in several ends there.
+        let runs: Vec<_> = (0..8).map(|seed| least(rosenbrock, &[0.0; 10], seed, 12_000)).collect();
+        let second = |loss: &f64| (loss - 3.9866).abs() < 1e-3;
+        assert!(
+            runs.iter().filter_map(|run| run.as_ref().err()).all(|losses| losses.iter().all(second)),
+            "{runs:?}"
+        );
+        assert!(runs.iter().filter(|run| run.is_ok()).count() >= 6, "{runs:?}");
         for seed in 0..4 {
             assert!(evaluations(sphere, &[1.0; 10], seed, 2500) > 500);
             evaluations(ellipsoid, &[1.0; 10], seed, 9000);
-            evaluations(rosenbrock, &[0.0; 10], seed, 12_000);
             evaluations(rosenbrock, &[-1.0, 1.0], seed, 1500);
             evaluations(sphere, &[2.0], seed, 300);
         }

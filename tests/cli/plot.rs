@@ -2,31 +2,22 @@
 //! depend on threads, and calls that are wrong.
 
 use super::formats::validated;
-use crate::program::{Place, timeless};
+use crate::program::{Place, SMALL, timeless};
 use serde_json::Value;
 
-const MODEL: &str = "param width = 1 m\nhorizon = 8 s\nstep = 0.1 s\nscene { line goal: (0, -5) -- (0, 5) }
-kind adult: sfm preset smc1
-agent user: adult { at = (uniform(-8, -2), 0)  heading = 0 deg  speed = 1.2 m/s }
-agents crowd[4]: adult { at = (uniform(2, 5), uniform(-width / 1 m, width / 1 m)) m }
-moves user for 1 s { heading in -30 deg, 0 deg, 30 deg  stop }
-";
-
-const ASKED: &str = "property near = F<=5 s (exists a in crowd: distance(user, a) < 3 m)
+const ASKED: &str = "property near = F<=3 s (exists a in crowd: distance(user, a) < 3 m)
 check P(near) >= 0.5 by sprt(alpha = 0.05, beta = 0.05, indifference = 0.1)
-property ahead = F<=5 s (x(user) > -1 m)
-check P(ahead) >= 0.9
+property ahead = F<=3 s (x(user) > 2 m)
+check P(ahead) >= 0.5
 estimate P(near) within 0.1
-estimate Q(0.5, time_until(x(user) > -3 m)) by fixed(trials = 100)
+estimate Q(0.5, time_until(x(user) > 2 m)) by fixed(trials = 100)
 rank moves of user by P(near) within 0.1
 ";
 
 fn place() -> Place {
-    Place::new(&[
-        ("a.scn", MODEL),
-        ("a.bltl", ASKED),
-        ("sweep.bltl", "property far = F<=5 s (x(user) > 0 m)\nestimate P(far) within 0.1\n"),
-    ])
+    let near =
+        "property near = F<=3 s (exists a in crowd: distance(user, a) < 1 m)\nestimate P(near) within 0.1\n";
+    Place::new(&[("a.scn", SMALL), ("a.bltl", ASKED), ("sweep.bltl", near)])
 }
 
 /// The results of a call with its evidence, written to `out.json`.
@@ -92,9 +83,9 @@ fn each_figure_is_drawn() {
     draw(&["--figure", "evidence", "--only", "4"]);
     assert!(draw(&["--figure", "ranking"]).contains("(chosen)"));
     assert!(draw(&["--figure", "distribution"]).contains("quantile 0.5"));
-    results(&place, &["sweep.bltl", "--set", "width=1 m, 2 m, 4 m"]);
+    results(&place, &["sweep.bltl", "--set", "density=0.1 /m^2, 0.2 /m^2, 0.4 /m^2"]);
     let sweep = draw(&["--figure", "sweep"]);
-    assert!(sweep.contains("width (m)"), "{sweep}");
+    assert!(sweep.contains("density (/m^2)"), "{sweep}");
     let said = place.call(&["plot", "out.json", "--figure", "sweep", "-o", "sweep.svg"]);
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""));
     assert_eq!(std::fs::read_to_string(place.path("sweep.svg")).unwrap(), sweep);

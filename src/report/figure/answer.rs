@@ -1,10 +1,13 @@
 //! The results of a file that `smc check --format json` has written, as figures need them.
 
-use super::Flaw;
+use super::flaw::Flaw;
 use serde_json::Value;
 
 /// The schema of results that is read.
 pub(super) const SCHEMA: u64 = 3;
+
+/// What a figure needs of a query, and what to write so that a file has it.
+pub(super) type Needed = (&'static str, &'static str);
 
 /// The results of a file about one query; several under several settings.
 pub(super) struct Answer<'v> {
@@ -22,7 +25,7 @@ impl<'v> Answer<'v> {
     pub(super) fn of(
         file: &'v Value,
         only: Option<&str>,
-        needed: &str,
+        (needed, hint): Needed,
         fits: impl Fn(&[&Value]) -> bool,
     ) -> Result<Self, Flaw> {
         let schema = file["schema"].as_u64();
@@ -43,7 +46,9 @@ impl<'v> Answer<'v> {
         }
         let is_named = |answer: &Self| {
             let one = answer.results[0];
-            only.is_none_or(|only| one["name"].as_str() == Some(only) || one["index"].to_string() == only)
+            only.is_none_or(|only| {
+                one["name"].as_str() == Some(only) || only.parse() == Ok(number(&one["index"]))
+            })
         };
         answers.retain(is_named);
         if let (Some(only), true) = (only, answers.is_empty()) {
@@ -55,7 +60,7 @@ impl<'v> Answer<'v> {
         }
         answers.retain(|answer| fits(&answer.results));
         match answers.len() {
-            0 => Err(Flaw::new(format!("no query of the file has {needed}"), hint(needed))),
+            0 => Err(Flaw::new(format!("no query of the file has {needed}"), hint)),
             1 => Ok(answers.remove(0)),
             _ => {
                 let names = answers.iter().map(|answer| name_of(answer.results[0])).collect();
@@ -81,16 +86,6 @@ impl<'v> Answer<'v> {
     }
 }
 
-/// What to write so that a file has what a figure needs.
-fn hint(needed: &str) -> &'static str {
-    match needed {
-        super::evidence::NEEDED => "add `--evidence` to the call of `smc check` that makes the file",
-        super::sweep::NEEDED => "sweep a parameter: `smc check … --set 'width=0.8..1.6 by 0.2'`",
-        super::ranking::NEEDED => "ask a ranking: `rank … by P(…)`",
-        _ => "ask for a quantile or an expectation, such as `estimate Q(0.5, time_until(safe))`",
-    }
-}
-
 fn name_of(result: &Value) -> String {
     result["name"].as_str().map_or_else(|| result["index"].to_string(), str::to_owned)
 }
@@ -105,7 +100,8 @@ pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
-/// Low end, estimate and high end.
+/// Low end, estimate and high end. An end that the file does not have is infinite.
 pub(super) fn interval(value: &Value) -> [f64; 3] {
-    ["low", "estimate", "high"].map(|key| number(&value[key]))
+    let end = |key: &str, infinite| value[key].as_f64().unwrap_or(infinite);
+    [end("low", f64::NEG_INFINITY), number(&value["estimate"]), end("high", f64::INFINITY)]
 }

@@ -1,8 +1,8 @@
 //! Reliability of predictions that `smc evaluate --format json` has written: the share that happened over the predicted
 //! probability (Murphy and Winkler 1977), a frame a property, a line a kind.
 
-use super::Flaw;
 use super::answer::number;
+use super::flaw::Flaw;
 use super::frame::{Frame, Scale, picture};
 use serde_json::Value;
 
@@ -39,7 +39,9 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
             let bins = of_name.and_then(|one| one["bins"].as_array().cloned()).unwrap_or_default();
             let points: Vec<(f64, f64)> =
                 bins.iter().map(|bin| (number(&bin["mean"]), number(&bin["share"]))).collect();
-            points.iter().for_each(|(x, y)| frame.mark(*x, *y, k));
+            for (x, y) in &points {
+                frame.mark(*x, *y, k);
+            }
             frame.line(points, k);
             frame.name(kind["name"].as_str().unwrap_or_default(), k);
         }

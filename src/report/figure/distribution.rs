@@ -1,12 +1,14 @@
 //! The empirical distribution function of a metric with its simultaneous band (Dvoretzky, Kiefer and Wolfowitz 1956; Massart
 //! 1990). For `time_until(p)` it is P(F<=t p) over t.
 
-use super::Flaw;
-use super::answer::{Answer, number};
+use super::answer::{Answer, Needed, number};
+use super::flaw::Flaw;
 use super::frame::{Frame, Scale, picture};
 use serde_json::Value;
 
-pub(super) const NEEDED: &str = "a distribution";
+/// What it needs.
+const NEEDED: Needed =
+    ("a distribution", "ask for a quantile or an expectation, such as `estimate Q(0.5, time_until(safe))`");
 
 pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
     let has_one = |results: &[&Value]| {
@@ -56,8 +58,9 @@ pub(super) fn frame(result: &Value) -> Option<Frame> {
     for quantile in found["quantiles"].as_array().into_iter().flatten() {
         let level = number(&quantile["level"]);
         frame.level(level, &format!("quantile {level}"));
-        let value = quantile["estimate"].as_f64();
-        value.into_iter().for_each(|value| frame.mark(value, level, 0));
+        if let Some(value) = quantile["estimate"].as_f64() {
+            frame.mark(value, level, 0);
+        }
     }
     Some(frame)
 }

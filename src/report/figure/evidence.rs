@@ -1,12 +1,13 @@
 //! How evidence grew over the trials: the confidence sequence; the evidence of a test, for above upwards and for below
 //! downwards, between its thresholds; the trials of each option of a ranking, up to where it was eliminated.
 
-use super::Flaw;
-use super::answer::{Answer, interval, number};
+use super::answer::{Answer, Needed, interval, number};
+use super::flaw::Flaw;
 use super::frame::{Frame, Scale, picture};
 use serde_json::Value;
 
-pub(super) const NEEDED: &str = "evidence";
+/// What it needs.
+const NEEDED: Needed = ("evidence", "add `--evidence` to the call of `smc check` that makes the file");
 
 /// Options that are named.
 const NAMED: usize = 12;
@@ -50,14 +51,8 @@ fn sequence(result: &Value, snapshots: &[Value]) -> Frame {
         Scale::linear(snapshots.iter().flat_map(interval).chain(theta))
     };
     let mut frame = Frame::new(["trials", &axis], Scale::log(snapshots.iter().map(trials)), y);
-    let band: Vec<(f64, f64, f64)> = snapshots
-        .iter()
-        .map(|one| (trials(one), interval(one)))
-        .map(|(x, [low, _, high])| {
-            let end = |end: f64, other| if end.is_nan() { other } else { end };
-            (x, end(low, f64::NEG_INFINITY), end(high, f64::INFINITY))
-        })
-        .collect();
+    let band = snapshots.iter().map(|one| (trials(one), interval(one)));
+    let band: Vec<(f64, f64, f64)> = band.map(|(x, [low, _, high])| (x, low, high)).collect();
     frame.band(&band, 1);
     frame.line(snapshots.iter().map(|one| (trials(one), number(&one["estimate"]))), 1);
     if let Some(theta) = theta {

@@ -7,6 +7,8 @@ use crate::report::number::plain;
 use crate::report::svg::chart::LINES;
 use std::fmt::Write as _;
 
+/// The name of the language, which a picture alone needs.
+pub(super) const LANGUAGE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 /// Size of the area between the axes, pixels.
 const AREA: (f64, f64) = (520.0, 300.0);
 /// Room at the left, above, at the right and below, pixels.
@@ -130,7 +132,7 @@ impl Frame {
         frame.left = (20.0 + LETTER * letters as f64).max(ROOM[0]);
         frame.height = 1.5 * LINE * names.len() as f64;
         for (k, name) in names.iter().enumerate() {
-            let y = frame.row(k);
+            let y = height_of_row(k);
             let x = frame.left - 10.0;
             text(&mut frame.body, (x, y + 4.0), "end", name);
         }
@@ -141,11 +143,6 @@ impl Frame {
     pub(super) fn low(mut self) -> Self {
         self.height = 0.5 * AREA.1;
         self
-    }
-
-    /// The height of row number `k` from above, pixels.
-    fn row(&self, k: usize) -> f64 {
-        ROOM[1] + 1.5 * LINE * (k as f64 + 0.5)
     }
 
     fn at(&self, x: f64, y: f64) -> (f64, f64) {
@@ -193,7 +190,7 @@ impl Frame {
 
     /// An interval in row number `row`, with its estimate.
     pub(super) fn lying(&mut self, row: usize, [low, middle, high]: [f64; 3], k: usize) {
-        let y = self.row(row);
+        let y = height_of_row(row);
         let ((from, _), (to, _)) = (self.at(low, 0.0), self.at(high, 0.0));
         self.whisker(&format!("M{from:.1},{y:.1}H{to:.1}m0,-3v6M{from:.1},{:.1}v6", y - 3.0), k);
         if !middle.is_nan() {
@@ -271,6 +268,11 @@ impl Frame {
     }
 }
 
+/// The height of row number `k` from above, pixels.
+fn height_of_row(k: usize) -> f64 {
+    ROOM[1] + 1.5 * LINE * (k as f64 + 0.5)
+}
+
 /// Frames below each other as one picture.
 pub(super) fn picture(title: &str, frames: Vec<Frame>) -> String {
     let (mut body, mut width, mut y) = (String::new(), 0.0_f64, 2.0 * LINE);
@@ -281,7 +283,7 @@ pub(super) fn picture(title: &str, frames: Vec<Frame>) -> String {
     }
     let letters = (width / LETTER) as usize - 4;
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {y:.0}\" width=\"{width:.0}\" role=\"img\" font-family=\"sans-serif\" font-size=\"11\">\n<title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n<text x=\"12\" y=\"20\" font-size=\"12\">{}</text>\n{body}</svg>\n",
+        "<svg{LANGUAGE} viewBox=\"0 0 {width:.0} {y:.0}\" width=\"{width:.0}\" role=\"img\" font-family=\"sans-serif\" font-size=\"11\">\n<title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n<text x=\"12\" y=\"20\" font-size=\"12\">{}</text>\n{body}</svg>\n",
         escape(title),
         escape(&cut(title, letters))
     )

@@ -4,10 +4,12 @@ mod answer;
 mod calibration;
 mod distribution;
 mod evidence;
+mod flaw;
 mod frame;
 mod ranking;
 mod sweep;
 
+pub use flaw::Flaw;
 use serde_json::Value;
 
 /// What is drawn.
@@ -23,21 +25,6 @@ pub enum Figure {
     Evidence,
     /// Predicted probabilities against what happened.
     Calibration,
-}
-
-/// Why a figure cannot be drawn, and what to do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Flaw {
-    /// What is wrong.
-    pub message: String,
-    /// What to write.
-    pub hint: String,
-}
-
-impl Flaw {
-    fn new(message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { message: message.into(), hint: hint.into() }
-    }
 }
 
 /// The figure of what a file says; of several queries that could be drawn `only` names one.
@@ -60,7 +47,9 @@ pub(super) fn of_result(result: &Value) -> String {
     if frames.is_empty() {
         return String::new();
     }
-    frame::picture(result["query"].as_str().unwrap_or_default(), frames)
+    let svg = frame::picture(result["query"].as_str().unwrap_or_default(), frames);
+    // Within a page it needs no name of its language.
+    svg.replacen(frame::LANGUAGE, "", 1)
 }
 
 #[cfg(test)]

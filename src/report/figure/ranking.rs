@@ -1,11 +1,12 @@
 //! The options of a ranking with their joint intervals, the choice first.
 
-use super::Flaw;
-use super::answer::{Answer, interval};
+use super::answer::{Answer, Needed, interval};
+use super::flaw::Flaw;
 use super::frame::{Frame, Scale, picture};
 use serde_json::Value;
 
-pub(super) const NEEDED: &str = "a ranking";
+/// What it needs.
+const NEEDED: Needed = ("a ranking", "ask a ranking: `rank … by P(…)`");
 
 /// Most options that are drawn.
 const MOST: usize = 40;

@@ -1,11 +1,13 @@
 //! Results over the values of a swept parameter, with their intervals; a line for each combination of other parameters.
 
-use super::Flaw;
-use super::answer::{Answer, interval, number};
+use super::answer::{Answer, Needed, interval, number};
+use super::flaw::Flaw;
 use super::frame::{Frame, Scale, picture};
 use serde_json::Value;
 
-pub(super) const NEEDED: &str = "results under several settings";
+/// What it needs.
+const NEEDED: Needed =
+    ("results under several settings", "sweep a parameter: `smc check … --set 'width=0.8..1.6 by 0.2'`");
 
 /// A line: the other parameters in words, and the place and interval of each result.
 type Line = (String, Vec<(f64, [f64; 3])>);
