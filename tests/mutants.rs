@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 26] = [
+const PAIRS: [(&str, &str); 27] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
