@@ -36,7 +36,7 @@ pub struct Advised {
 }
 
 /// The page.
-pub fn to_page<'a>(advised: Advised, sources: &'a [Source]) -> Page<'a> {
+pub fn to_page(advised: Advised, sources: &[Source]) -> Page<'_> {
     let (walks, unnamed) = walks(&advised);
     let Advised { title, scene, seed, cycles, followed, end, .. } = advised;
     let trace = recorded(&title, scene, &walks);

@@ -38,7 +38,9 @@ fn walks(found: &Inference) -> Vec<Walk> {
     }
     for instant in found.points.chunk_by(|a, b| a.point.time == b.point.time) {
         let mut members: BTreeMap<u64, u64> = BTreeMap::new();
-        instant.iter().for_each(|one| *members.entry(one.group).or_default() += 1);
+        for one in instant {
+            *members.entry(one.group).or_default() += 1;
+        }
         for one in instant {
             let group = Some(one.group).filter(|group| members[group] > 1);
             if let Some(walk) = walks.get_mut(&one.trace)

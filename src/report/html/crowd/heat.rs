@@ -44,7 +44,7 @@ struct Grid {
 impl Grid {
     /// The finest grid over some bounds.
     fn over(bounds: &Bounds) -> Self {
-        let sides = (0..9).flat_map(|power| SIDES.map(|side| side * 10.0_f64.powi(power)));
+        let sides = (0..9).flat_map(|power| SIDES.map(|side| side * f64::from(10_u32.pow(power))));
         let size = |side: f64| {
             let cells = |low: f64, high: f64| (high / side).floor() - (low / side).floor() + 1.0;
             [cells(bounds.low.x, bounds.high.x), cells(bounds.low.y, bounds.high.y)]
@@ -93,7 +93,9 @@ impl Grid {
 /// The maps of some traces of one scene; none of contact where nobody touches, and of recordings, which have no bodies.
 pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec<Figure> {
     let mut grid = Grid::over(plan.walked());
-    traces.iter().for_each(|trace| grid.add(&trace.motion));
+    for trace in traces {
+        grid.add(&trace.motion);
+    }
     for (at, area) in moments.iter().flat_map(|moment| &moment.people) {
         if let (Some(cell), true) = (grid.at(*at), *area > 0.0) {
             cell.density += 1.0 / area;

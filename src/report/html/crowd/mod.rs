@@ -53,7 +53,9 @@ pub(super) fn crowds(run: &CallResult, traces: &[Trace]) -> (Vec<Crowd>, String)
     let mut shown: Vec<Crowd> =
         scenes.iter().take(MOST_SCENES).filter_map(|traces| crowd(run, traces)).collect();
     if scenes.len() == 1 {
-        shown.iter_mut().for_each(|one| one.head.clear());
+        for one in &mut shown {
+            one.head.clear();
+        }
     }
     let left_out = match left_out as u64 {
         0 => String::new(),
