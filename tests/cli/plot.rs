@@ -79,7 +79,7 @@ fn each_figure_is_drawn() {
         assert!(said.out.starts_with("<svg") && !said.out.contains("NaN"), "{}", said.out);
         said.out
     };
-    draw(&["--figure", "evidence", "--only", "near"]);
+    draw(&["--figure", "evidence", "--only", "0"]);
     draw(&["--figure", "evidence", "--only", "4"]);
     assert!(draw(&["--figure", "ranking"]).contains("(chosen)"));
     assert!(draw(&["--figure", "distribution"]).contains("quantile 0.5"));

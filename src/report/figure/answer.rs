@@ -63,10 +63,14 @@ impl<'v> Answer<'v> {
             0 => Err(Flaw::new(format!("no query of the file has {needed}"), hint)),
             1 => Ok(answers.remove(0)),
             _ => {
-                let names = answers.iter().map(|answer| name_of(answer.results[0])).collect();
+                let one = |answer: &Self| {
+                    let first = answer.results[0];
+                    format!("{} ({})", first["index"], name_of(first))
+                };
+                let all: Vec<String> = answers.iter().map(one).collect();
                 Err(Flaw::new(
                     format!("several queries of the file have {needed}"),
-                    format!("choose one with `--only`: {}", listed(names)),
+                    format!("choose one by its number with `--only`: {}", all.join(", ")),
                 ))
             }
         }

@@ -1,57 +1,16 @@
 //! `smc plot`: a figure of results as SVG.
 
+mod arguments;
+
 use super::terminal::{Colors, print};
 use super::{complaint, inputs, output};
 use crate::report::ExitCode as Exit;
-use crate::report::figure::{Figure, draw};
+use crate::report::figure::draw;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-use clap::{Args, ValueEnum};
+pub(super) use arguments::PlotCommand;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-
-/// `smc plot`
-#[derive(Args, Debug)]
-pub(super) struct PlotCommand {
-    /// Results of `smc check --format json`, or `-` for standard input; for `calibration` those of `smc evaluate`.
-    results: String,
-    /// What is drawn.
-    #[arg(long, value_enum)]
-    figure: FigureName,
-    /// Of several queries that could be drawn this one: the name of its property, or its number in writing order.
-    #[arg(long, value_name = "NAME")]
-    only: Option<String>,
-    /// The figure; standard output by default.
-    #[arg(short, long, value_name = "FILE.svg")]
-    output: Option<PathBuf>,
-}
-
-/// Names of figures.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum FigureName {
-    /// Results over a swept parameter.
-    Sweep,
-    /// Options of a ranking with their intervals.
-    Ranking,
-    /// The distribution function of a metric with its band.
-    Distribution,
-    /// How the evidence grew over the trials.
-    Evidence,
-    /// Predicted probabilities against what happened.
-    Calibration,
-}
-
-impl FigureName {
-    const fn of(self) -> Figure {
-        match self {
-            Self::Sweep => Figure::Sweep,
-            Self::Ranking => Figure::Ranking,
-            Self::Distribution => Figure::Distribution,
-            Self::Evidence => Figure::Evidence,
-            Self::Calibration => Figure::Calibration,
-        }
-    }
-}
+use std::path::Path;
 
 /// Runs the command.
 pub(super) fn run(command: &PlotCommand, colors: Colors) -> Exit {
