@@ -11,8 +11,7 @@ use crate::syntax::source::{Source, SourceId, Span};
 /// The kind without forces: everybody keeps the velocity.
 pub const CONSTANT: &str = "constant";
 
-/// The kind of a plain Langevin walker: no forces, and a noise of 0.2 m/s around the recorded velocity (Corbetta et al. 2017
-/// measured fluctuations of this size).
+/// The kind of a plain Langevin walker: no forces, and a noise of 0.2 m/s around the recorded velocity, which we chose.
 pub const LANGEVIN: &str = "langevin";
 const LANGEVIN_NOISE: f64 = 0.2;
 
