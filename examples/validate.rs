@@ -12,6 +12,10 @@
 #[path = "validate/recorded.rs"]
 mod recorded;
 
+#[path = "validate/figures.rs"]
+mod figures;
+
+use figures::Figures;
 use smc::compile::presets::PRESETS;
 use smc::{Draft, Options, Report};
 use std::collections::BTreeSet;
@@ -36,11 +40,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     let mut page = fs::read_to_string(folder.join("head.md"))?;
     page.push_str(&recorded::section(folders.first().map(Path::new), most.min(TRIALS))?);
+    let mut figures = Figures::default();
     for name in &names {
         let scenario = fs::read_to_string(folder.join(format!("{name}.scn")))?;
         let properties = fs::read_to_string(folder.join(format!("{name}.bltl")))?;
         eprintln!("{name}");
-        page.push_str(&section((name, &scenario, &properties), most)?);
+        let started = std::time::Instant::now();
+        page.push_str(&section((name, &scenario, &properties), most, &mut figures)?);
+        page.push_str(&figures.below(name)?);
+        eprintln!("  {:.0} s", started.elapsed().as_secs_f64());
     }
     page.push_str(&fs::read_to_string(folder.join("missing.md"))?);
     fs::write("docs/validation.md", page)?;
@@ -56,6 +64,7 @@ fn comment<'a>(text: &'a str, word: &str) -> Option<&'a str> {
 fn section(
     (name, scenario, properties): (&str, &str, &str),
     most: u64,
+    figures: &mut Figures,
 ) -> Result<String, Box<dyn std::error::Error>> {
     let mut out = format!("\n## {name}\n\n");
     writeln!(out, "{} {}\n", comment(scenario, "").unwrap_or(""), comment(properties, "").unwrap_or(""))?;
@@ -76,6 +85,10 @@ fn section(
             source.parse()?.check(properties, &options)
         };
         let reports: Vec<_> = presets.iter().map(of).collect();
+        for (preset, report) in presets.iter().zip(&reports) {
+            let report = report.as_ref().ok();
+            figures.note((name, preset), setting.map(|(_, value)| value), report.map_or(&[], Report::results));
+        }
         let queries =
             properties.lines().filter(|line| line.starts_with("check ") || line.starts_with("estimate "));
         for (k, query) in queries.enumerate() {

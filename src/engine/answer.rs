@@ -370,6 +370,7 @@ impl Answers<'_> {
         }
         result.unit = unit;
         result.compare = Some(tables::sides(&gap, &labels, *delta));
+        result.evidence = gap.evidence;
         result.elapsed_s = compare.spent;
         Ok(Some(result))
     }

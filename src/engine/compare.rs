@@ -6,7 +6,7 @@ use super::estimate::LARGEST_ROUND;
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
-use super::outcome::Stop;
+use super::outcome::{Evidence, Interval, Snapshot, Stop, next_after};
 use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
@@ -42,6 +42,8 @@ pub(super) struct Gap {
     pub(super) pairs: u64,
     /// Pairs with an unresolved trial.
     pub(super) unresolved: u64,
+    /// How the evidence grew over the pairs, where that was asked for.
+    pub(super) evidence: Option<Evidence>,
 }
 
 /// Two sides of a comparison: prepared world and column of each.
@@ -82,6 +84,8 @@ pub(super) struct CompareSampling<'s> {
     means: Vec<Mean>,
     /// What it has read so far, for forecasts.
     statistics: PilotStatistics,
+    /// How its evidence grew; `None` where nobody asks.
+    evidence: Option<Vec<Snapshot>>,
     /// Seconds that it has taken so far.
     pub(super) spent: f64,
 }
@@ -93,7 +97,7 @@ impl<'s> CompareSampling<'s> {
         sides: &Sides<'s>,
         kind: &MeasureKind,
         (within, delta): (Option<f64>, f64),
-        seed: u64,
+        (seed, shows_evidence): (u64, bool),
     ) -> Result<Self, Fault> {
         let range = match kind {
             MeasureKind::Expectation { range, .. } => Some(*range),
@@ -120,9 +124,9 @@ impl<'s> CompareSampling<'s> {
             }
         };
         let jobs = [0, 1].map(|side| Job::new(sides.worlds[side], vec![sides.columns[side]], seed));
-        let tallies = Default::default();
-        let (statistics, ahead, spent) = Default::default();
-        Ok(Self { query, jobs, procedure, range, within, delta, ahead, tallies, means, statistics, spent })
+        let (tallies, statistics, ahead, spent) = Default::default();
+        let evidence = shows_evidence.then(Vec::new);
+        Ok(Self { query, jobs, procedure, range, within, delta, ahead, tallies, means, statistics, evidence, spent })
     }
 
     /// The query.
@@ -266,6 +270,7 @@ impl<'s> CompareSampling<'s> {
                         }
                     }
                 };
+                self.note(next_after);
                 if finished && self.within.is_some() {
                     break 'sampling Stop::Width;
                 }
@@ -276,23 +281,39 @@ impl<'s> CompareSampling<'s> {
         Ok(Some(self.finish(stop)))
     }
 
-    fn finish(&mut self, stop: Stop) -> Gap {
-        let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
-        let (interval, estimate, alone, unresolved) = match &self.procedure {
+    /// The estimate of first less second, and its interval.
+    fn found(&self) -> (f64, stats::Interval) {
+        let (estimate, interval) = match &self.procedure {
             Procedure::Probability(difference) => {
                 let (low, high) = difference.pairs();
-                let estimate = 0.5 * (low.mean() + high.mean());
-                (
-                    difference.interval(),
-                    estimate,
-                    (high.first.min(low.first), low.second.min(high.second)),
-                    difference.unresolved(),
-                )
+                ((low.mean(), high.mean()), difference.interval())
             }
-            Procedure::Expectation(mean) => {
-                let (low, high) = mean.estimate();
-                (mean.interval(), 0.5 * (low + high), (0, 0), mean.read().1)
+            Procedure::Expectation(mean) => (mean.estimate(), mean.interval()),
+        };
+        (0.5 * (estimate.0 + estimate.1), interval)
+    }
+
+    /// Notes what is known by now; `due` is the number of pairs for which it is time, from that noted last.
+    fn note(&mut self, due: impl Fn(u64) -> u64) {
+        let trials = self.tallies[0].counts.trials;
+        let noted = |list: &Vec<Snapshot>| list.last().map_or(0, |last| last.trials);
+        if self.evidence.as_ref().is_some_and(|list| trials >= due(noted(list))) {
+            let (estimate, interval) = self.found();
+            let value = Interval { estimate, low: interval.low, high: interval.high };
+            self.evidence.get_or_insert_default().push(Snapshot { trials, value, weights: None });
+        }
+    }
+
+    fn finish(&mut self, stop: Stop) -> Gap {
+        self.note(|noted| noted + 1);
+        let (estimate, interval) = self.found();
+        let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
+        let (alone, unresolved) = match &self.procedure {
+            Procedure::Probability(difference) => {
+                let (low, high) = difference.pairs();
+                ((high.first.min(low.first), low.second.min(high.second)), difference.unresolved())
             }
+            Procedure::Expectation(mean) => ((0, 0), mean.read().1),
         };
         let pairs = tallies[0].counts.trials;
         let wide = |within: f64| interval.half_width() > within * (1.0 + 1e-9);
@@ -300,6 +321,7 @@ impl<'s> CompareSampling<'s> {
             Stop::Width if unresolved > 0 && self.within.is_some_and(wide) => Stop::Unresolved,
             stop => stop,
         };
-        Gap { sides: tallies, means, stop, interval, estimate, alone, pairs, unresolved }
+        let evidence = self.evidence.take().map(Evidence::Values);
+        Gap { sides: tallies, means, stop, interval, estimate, alone, pairs, unresolved, evidence }
     }
 }

@@ -381,7 +381,8 @@ impl<'a> Session<'a> {
             worlds: [self.prepared(first.target.world)?, self.prepared(second.target.world)?],
             columns: [first.target.column, second.target.column],
         };
-        CompareSampling::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
+        let asked = (self.call.seed, self.call.shows_evidence);
+        CompareSampling::new(query, &sides, &first.kind, (*within, *delta), asked)
     }
 
     fn rank<'q>(&self, query: &'q Query) -> Result<RankSampling<'q>, Fault>

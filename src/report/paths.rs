@@ -1,7 +1,8 @@
 //! Planned paths as data and as pictures: `smc path`.
 
 use super::number::plain;
-use super::svg::chart::Chart;
+use super::svg::frame::{Frame, picture};
+use super::svg::scale::Scale;
 use super::svg::{Ink, plan};
 use crate::base::geometry::Vec2;
 use crate::model::Scenario;
@@ -149,37 +150,49 @@ pub fn map(scenario: &Scenario, paths: &[PlannedPath], instants: &[f64]) -> Stri
 
 /// The plane of place and speed: limit curve, feasible region, and profiles.
 pub fn phase(region: &Region, courses: &[Course], title: &str) -> String {
-    let mut chart = Chart::new("s (m)", "ds/dt (m/s)");
     let length = region.optimum().length();
     let at = |k: u32| length * f64::from(k) / f64::from(POINTS);
-    let curve = |of: &dyn Fn(f64) -> f64| -> Vec<Vec2> {
-        (0..=POINTS).map(|k| Vec2::new(at(k), of(at(k)))).collect()
-    };
-    for (k, course) in courses.iter().enumerate() {
+    let curve =
+        |of: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> { (0..=POINTS).map(|k| (at(k), of(at(k)))).collect() };
+    let profile = |(k, course): (usize, &Course)| {
         let time = |k: u32| course.motion(course.duration() * f64::from(k) / f64::from(POINTS));
-        let points = (0..=POINTS).map(time).map(|motion| Vec2::new(motion.distance, motion.speed));
-        chart.line(&format!("profile {}", k + 1), points);
-    }
-    chart.line("fastest", curve(&|x| region.highest(x)));
-    chart.line("slowest", curve(&|x| region.lowest(x)));
-    chart.line("limit", curve(&|x| region.limit(x)));
-    chart.finish(title)
+        let points = (0..=POINTS).map(time).map(|motion| (motion.distance, motion.speed));
+        (format!("profile {}", k + 1), points.collect())
+    };
+    let mut curves: Vec<_> = courses.iter().enumerate().map(profile).collect();
+    curves.push(("fastest".to_owned(), curve(&|x| region.highest(x))));
+    curves.push(("slowest".to_owned(), curve(&|x| region.lowest(x))));
+    curves.push(("limit".to_owned(), curve(&|x| region.limit(x))));
+    chart(["s (m)", "ds/dt (m/s)"], curves, title)
 }
 
 /// Speed and acceleration over time.
 pub fn speed(courses: &[Course], title: &str) -> String {
-    let mut chart = Chart::new("t (s)", "speed (m/s), acceleration (m/s^2)");
+    let mut curves = Vec::new();
     for (k, course) in courses.iter().enumerate() {
         let time = |k: u32| course.duration() * f64::from(k) / f64::from(POINTS);
         let all = || (0..=POINTS).map(time).map(|t| (t, course.motion(t)));
         let of = |what: &str| if courses.len() == 1 { what.to_owned() } else { format!("{what} {}", k + 1) };
-        chart.line(&of("speed"), all().map(|(t, motion)| Vec2::new(t, motion.speed)));
+        curves.push((of("speed"), all().map(|(t, motion)| (t, motion.speed)).collect()));
         let whole = |motion: crate::route::profile::Motion| {
             let curvature = course.path.at(motion.distance).curvature;
             let across = motion.speed * motion.speed * curvature;
             (motion.acceleration * motion.acceleration + across * across).sqrt()
         };
-        chart.line(&of("acceleration"), all().map(|(t, motion)| Vec2::new(t, whole(motion))));
+        curves.push((of("acceleration"), all().map(|(t, motion)| (t, whole(motion))).collect()));
     }
-    chart.finish(title)
+    chart(["t (s)", "speed (m/s), acceleration (m/s^2)"], curves, title)
+}
+
+/// Named curves between axes that contain zero. What is infinite is left out.
+fn chart(axes: [&str; 2], curves: Vec<(String, Vec<(f64, f64)>)>, title: &str) -> String {
+    let all = || curves.iter().flat_map(|(_, points)| points.iter().copied());
+    let x = Scale::linear(all().map(|(x, _)| x).chain([0.0]));
+    let y = Scale::linear(all().map(|(_, y)| y).chain([0.0]));
+    let mut frame = Frame::new(axes, x, y);
+    for (k, (name, points)) in curves.into_iter().enumerate() {
+        frame.line(points.into_iter().filter(|(x, y)| x.is_finite() && y.is_finite()), k);
+        frame.name(&name, k);
+    }
+    picture(title, vec![frame])
 }

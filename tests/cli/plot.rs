@@ -12,6 +12,7 @@ check P(ahead) >= 0.5
 estimate P(near) within 0.1
 estimate Q(0.5, time_until(x(user) > 2 m)) by fixed(trials = 100)
 rank moves of user by P(near) within 0.1
+compare P(near) under density = 0.1 /m^2 with density = 0.3 /m^2 within 0.3
 ";
 
 fn place() -> Place {
@@ -54,7 +55,10 @@ fn evidence_grows_up_to_the_result_whatever_the_threads() {
             continue;
         }
         assert_eq!(trials[..4], [1, 2, 3, 4], "{query}");
-        for key in ["trials", "estimate", "low", "high"] {
+        // Of a comparison pairs are counted.
+        let sides = if result["kind"] == "compare" { 2 } else { 1 };
+        assert_eq!(last["trials"].as_u64().map(|n| sides * n), result["trials"].as_u64(), "{query}");
+        for key in ["estimate", "low", "high"] {
             assert_eq!(last[key], result[key], "{query}: {key}");
         }
         // A test decides where its evidence reaches a threshold, and not before.
@@ -81,6 +85,7 @@ fn each_figure_is_drawn() {
     };
     draw(&["--figure", "evidence", "--only", "0"]);
     draw(&["--figure", "evidence", "--only", "4"]);
+    assert!(draw(&["--figure", "evidence", "--only", "5"]).contains("no difference"));
     assert!(draw(&["--figure", "ranking"]).contains("(chosen)"));
     assert!(draw(&["--figure", "distribution"]).contains("quantile 0.5"));
     results(&place, &["sweep.bltl", "--set", "density=0.1 /m^2, 0.2 /m^2, 0.4 /m^2"]);

@@ -4,7 +4,7 @@
 use super::Evaluated;
 use crate::report::escape::escape;
 use crate::report::number::count;
-use crate::report::svg::chart::LINES;
+use crate::report::svg::frame::LINES;
 use crate::stats::BrierScore;
 use std::fmt::Write as _;
 

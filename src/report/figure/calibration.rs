@@ -3,7 +3,8 @@
 
 use super::answer::number;
 use super::flaw::Flaw;
-use super::frame::{Frame, Scale, picture};
+use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
 /// The schema of evaluated predictions that is read.

@@ -3,7 +3,8 @@
 
 use super::answer::{Answer, Needed, number};
 use super::flaw::Flaw;
-use super::frame::{Frame, Scale, picture};
+use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
 /// What it needs.

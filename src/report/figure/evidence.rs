@@ -1,9 +1,10 @@
-//! How evidence grew over the trials: the confidence sequence; the evidence of a test, for above upwards and for below
+//! How evidence grew over the trials, or the pairs of a comparison: the confidence sequence; the evidence of a test, for above upwards and for below
 //! downwards, between its thresholds; the trials of each option of a ranking, up to where it was eliminated.
 
 use super::answer::{Answer, Needed, interval, number};
 use super::flaw::Flaw;
-use super::frame::{Frame, Scale, picture};
+use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
 /// What it needs.
@@ -39,24 +40,28 @@ fn trials(snapshot: &Value) -> f64 {
 
 fn sequence(result: &Value, snapshots: &[Value]) -> Frame {
     let unit = result["unit"].as_str().unwrap_or_default();
-    let axis = if unit.is_empty() {
-        "probability, with its interval".to_owned()
-    } else {
-        format!("value ({unit}), with its interval")
+    let is_difference = result["kind"] == "compare";
+    let (trials_axis, what) = match (is_difference, unit) {
+        (true, _) => ("pairs of trials", "difference"),
+        (false, "") => ("trials", "probability"),
+        (false, _) => ("trials", "value"),
     };
-    let theta = result["method"]["theta"].as_f64();
-    let y = if unit.is_empty() {
-        Scale::shares()
-    } else {
-        Scale::linear(snapshots.iter().flat_map(interval).chain(theta))
+    let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+    let level = if is_difference { Some((0.0, "no difference")) } else { None };
+    let level = level.or_else(|| Some((result["method"]["theta"].as_f64()?, "threshold")));
+    let numbers = snapshots.iter().flat_map(interval).chain(level.map(|(at, _)| at));
+    let y = match (unit.as_str(), is_difference) {
+        ("", false) => Scale::shares(),
+        _ => Scale::linear(numbers),
     };
-    let mut frame = Frame::new(["trials", &axis], Scale::log(snapshots.iter().map(trials)), y);
+    let axes = [trials_axis, &format!("{what}{unit}, with its interval")];
+    let mut frame = Frame::new(axes, Scale::log(snapshots.iter().map(trials)), y);
     let band = snapshots.iter().map(|one| (trials(one), interval(one)));
     let band: Vec<(f64, f64, f64)> = band.map(|(x, [low, _, high])| (x, low, high)).collect();
     frame.band(&band, 1);
     frame.line(snapshots.iter().map(|one| (trials(one), number(&one["estimate"]))), 1);
-    if let Some(theta) = theta {
-        frame.level(theta, "threshold");
+    if let Some((at, name)) = level {
+        frame.level(at, name);
     }
     frame
 }

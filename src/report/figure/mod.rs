@@ -5,11 +5,11 @@ mod calibration;
 mod distribution;
 mod evidence;
 mod flaw;
-mod frame;
 mod ranking;
 mod sweep;
 
 pub use flaw::Flaw;
+use super::svg::frame::part_of_page;
 use serde_json::Value;
 
 /// What is drawn.
@@ -47,9 +47,7 @@ pub(super) fn of_result(result: &Value) -> String {
     if frames.is_empty() {
         return String::new();
     }
-    let svg = frame::picture(result["query"].as_str().unwrap_or_default(), frames);
-    // Within a page it needs no name of its language.
-    svg.replacen(frame::LANGUAGE, "", 1)
+    part_of_page(result["query"].as_str().unwrap_or_default(), frames)
 }
 
 #[cfg(test)]

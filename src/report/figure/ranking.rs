@@ -2,7 +2,8 @@
 
 use super::answer::{Answer, Needed, interval};
 use super::flaw::Flaw;
-use super::frame::{Frame, Scale, picture};
+use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
 /// What it needs.

@@ -3,6 +3,7 @@
 use crate::engine::outcome::Interval;
 use crate::report::escape::escape;
 use crate::report::number::plain;
+use crate::report::svg::scale::Scale;
 use std::fmt::Write as _;
 
 /// Widths in user units: one letter of a label, plot, numbers.
@@ -11,8 +12,6 @@ const PLOT: f64 = 340.0;
 const NUMBERS: f64 = 300.0;
 const ROW: f64 = 24.0;
 const AXIS: f64 = 26.0;
-/// Probabilities closer together than this are looked at closely.
-const APART: f64 = 0.1;
 
 /// How a row looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,57 +45,6 @@ pub(super) struct Mark {
     pub(super) said: String,
 }
 
-/// A linear axis with round ticks.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Axis {
-    low: f64,
-    high: f64,
-    ticks: Vec<f64>,
-}
-
-impl Axis {
-    /// An axis that shows all the numbers; from 0 to 1 where they are probabilities that lie apart.
-    pub(super) fn around(numbers: impl IntoIterator<Item = f64>, probability: bool) -> Self {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for x in numbers.into_iter().filter(|x| x.is_finite()) {
-            low = low.min(x);
-            high = high.max(x);
-        }
-        if low > high {
-            (low, high) = (0.0, 1.0);
-        }
-        if probability && high - low >= APART && high <= 1.0 && low >= -1.0 {
-            (low, high) = (if low < 0.0 { -1.0 } else { 0.0 }, 1.0);
-        } else if low == high {
-            let pad = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
-            (low, high) = (low - pad, high + pad);
-        }
-        let step = round_step((high - low) / 5.0);
-        let (first, last) = ((low / step).floor(), (high / step).ceil());
-        let ticks: Vec<f64> =
-            (0..=((last - first) as usize).min(20)).map(|k| (first + k as f64) * step).collect();
-        Self { low: first * step, high: last * step, ticks }
-    }
-
-    /// Its round numbers, ascending.
-    pub(super) fn ticks(&self) -> &[f64] {
-        &self.ticks
-    }
-
-    /// Where a number is, as a share of the axis; its ends for what lies outside.
-    pub(super) fn share(&self, x: f64) -> f64 {
-        ((x - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
-    }
-}
-
-/// The smallest of 1, 2, 5, 10, … times a power of ten that is not below `x`.
-fn round_step(x: f64) -> f64 {
-    let text = format!("{x:e}");
-    let exponent = text.split_once('e').map_or("0", |(_, e)| e);
-    let power = format!("1e{exponent}").parse::<f64>().unwrap_or(1.0);
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|&step| step >= x).unwrap_or(power)
-}
-
 /// The chart; empty without rows. What lies beyond the horizon is drawn at the end of the axis.
 pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, horizon: Option<f64>) -> String {
     if marks.is_empty() {
@@ -107,14 +55,14 @@ pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, hori
         .flat_map(|m| [m.value.estimate, m.value.low, m.value.high])
         .chain(threshold)
         .chain(horizon);
-    let axis = Axis::around(numbers, unit.is_empty());
+    let axis = if unit.is_empty() { Scale::probabilities(numbers) } else { Scale::linear(numbers) };
     let letters = marks.iter().map(|m| m.label.chars().count()).max().unwrap_or(0);
     let labels = (20.0 + LETTER * letters as f64).max(30.0);
     let x = |value: f64| labels + PLOT * axis.share(value);
     let bottom = ROW * marks.len() as f64 + 4.0;
     let (width, height) = (labels + PLOT + NUMBERS, bottom + AXIS);
     let mut svg = format!("<svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" role=\"img\">\n");
-    for &tick in &axis.ticks {
+    for &tick in axis.ticks() {
         let at = x(tick);
         let _ = writeln!(
             svg,
@@ -165,23 +113,6 @@ fn row(svg: &mut String, mark: &Mark, y: f64, labels: f64, x: &impl Fn(f64) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_contain_the_numbers() {
-        let axis = Axis::around([-0.047, 0.013], false);
-        assert_eq!(
-            axis.ticks.iter().map(|&t| plain(t)).collect::<Vec<_>>(),
-            ["-0.06", "-0.04", "-0.02", "0", "0.02"]
-        );
-        assert_eq!((axis.share(-9.0), axis.share(9.0)), (0.0, 1.0));
-        let apart = Axis::around([0.63, 0.95], true);
-        assert_eq!((apart.low, apart.high), (0.0, 1.0));
-        let close = Axis::around([0.93, 0.95], true);
-        assert!(close.low > 0.9 && close.high < 0.96);
-        let lone = Axis::around([f64::INFINITY, 7.0], false);
-        assert!(lone.low < 7.0 && lone.high > 7.0);
-        assert_eq!(Axis::around([], false).ticks.len(), 6);
-    }
 
     #[test]
     fn a_chart_without_rows_is_nothing() {

@@ -1,8 +1,8 @@
 //! A histogram in SVG.
 
-use super::chart::Axis;
 use crate::engine::outcome::Histogram;
 use crate::report::number::{count, plain};
+use crate::report::svg::scale::Scale;
 use std::fmt::Write as _;
 
 const WIDTH: f64 = 520.0;
@@ -19,7 +19,7 @@ pub(super) fn bars(histogram: &Histogram, unit: &str, endless: &str) -> String {
     let bins = histogram.counts.len() as f64;
     let bin = (histogram.high - histogram.low) / bins;
     let width = WIDTH / bins;
-    let height = Axis::around([0.0, most as f64], false);
+    let height = Scale::linear([0.0, most as f64]);
     let mut svg = format!(
         "<svg viewBox=\"0 0 {:.0} {:.0}\" width=\"{:.0}\" role=\"img\">\n",
         WIDTH + 2.0 * MARGIN,

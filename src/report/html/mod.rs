@@ -1,6 +1,5 @@
 //! A report as one HTML page, with nothing beside it: verdicts first, then a player of traces, then the texts.
 
-mod axes;
 mod chart;
 mod crowd;
 mod highlight;

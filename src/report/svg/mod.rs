@@ -1,8 +1,9 @@
 //! Drawings of the plane as SVG: axes in metres, a scale bar, and colours that differ in brightness, so that they survive
 //! print in grey.
 
-pub mod chart;
+pub mod frame;
 pub mod plan;
+pub mod scale;
 pub mod steps;
 
 use super::escape::escape;

@@ -3,13 +3,12 @@
 
 use super::figure::{Figure, brief_name};
 use super::moments::place;
-use crate::base::geometry::Vec2;
 use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
 use crate::model::Line;
-use crate::report::html::axes::Axes;
-use crate::report::html::chart::Axis;
 use crate::report::number::{brief, counted, plain};
+use crate::report::svg::frame::{Frame, part_of_page};
+use crate::report::svg::scale::Scale;
 
 /// Points of a curve.
 const POINTS: u32 = 240;
@@ -71,9 +70,10 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
     }
     let end = traces.iter().map(|trace| trace.end).fold(0.0, f64::max);
     let most = all.iter().copied().fold(1.0, f64::max);
-    let mut axes = Axes::new(
-        (Axis::around([0.0, end], false), "time (s)"),
-        (Axis::around([0.0, most], false), "agents that have crossed"),
+    let mut frame = Frame::new(
+        ["time (s)", "agents that have crossed"],
+        Scale::linear([0.0, end]),
+        Scale::linear([0.0, most]),
     );
     let mut means = Vec::new();
     let mut ends = Vec::new();
@@ -83,12 +83,13 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
             (trace.end >= time).then(|| times.partition_point(|one| *one <= time) as f64)
         };
         let now: Vec<f64> = traces.iter().zip(&times).filter_map(goes_on).collect();
-        means.push(Vec2::new(time, now.iter().sum::<f64>() / now.len() as f64));
-        ends.push((time, range(&now)));
+        means.push((time, now.iter().sum::<f64>() / now.len() as f64));
+        let [low, high] = range(&now);
+        ends.push((time, low, high));
     }
     if traces.len() > 1 {
-        axes.band(&ends);
+        frame.band(&ends, 1);
     }
-    axes.line(means.into_iter());
-    Figure { svg: axes.finish(&format!("N(t) through {name}")), caption, is_wide: true }
+    frame.line(means, 3);
+    Figure { svg: part_of_page(&format!("N(t) through {name}"), vec![frame]), caption, is_wide: true }
 }

@@ -3,10 +3,9 @@
 
 use super::figure::Figure;
 use super::moments::Moment;
-use crate::base::geometry::Vec2;
-use crate::report::html::axes::Axes;
-use crate::report::html::chart::Axis;
 use crate::report::number::count;
+use crate::report::svg::frame::{Frame, part_of_page};
+use crate::report::svg::scale::Scale;
 
 /// Dots of a figure.
 const MOST_DOTS: usize = 2000;
@@ -15,17 +14,18 @@ const MOST_DOTS: usize = 2000;
 pub(super) fn figure(moments: &[Moment]) -> Option<Figure> {
     let dot = |moment: &Moment| {
         let area: f64 = moment.people.iter().map(|(_, area)| area).sum();
-        Some(Vec2::new(moment.people.len() as f64 / area, moment.speed?)).filter(|dot| dot.x.is_finite())
+        Some((moment.people.len() as f64 / area, moment.speed?)).filter(|(density, _)| density.is_finite())
     };
-    let all: Vec<Vec2> = moments.iter().filter_map(dot).collect();
+    let all: Vec<(f64, f64)> = moments.iter().filter_map(dot).collect();
     let every = all.len().div_ceil(MOST_DOTS).max(1);
-    let dots: Vec<Vec2> = all.iter().copied().step_by(every).collect();
+    let dots: Vec<(f64, f64)> = all.iter().copied().step_by(every).collect();
     if dots.is_empty() {
         return None;
     }
-    let axis = |k: usize| Axis::around(dots.iter().map(|dot| dot[k]).chain([0.0]), false);
-    let mut axes = Axes::new((axis(0), "density (agents/m²)"), (axis(1), "mean speed (m/s)"));
-    axes.dots(dots.iter().copied());
+    let x = Scale::linear(dots.iter().map(|dot| dot.0).chain([0.0]));
+    let y = Scale::linear(dots.iter().map(|dot| dot.1).chain([0.0]));
+    let mut frame = Frame::new(["density (agents/m²)", "mean speed (m/s)"], x, y);
+    frame.cloud(dots, 1);
     let shown = if every > 1 {
         format!(" Of {} dots, one in {every} is shown.", count(all.len() as u64))
     } else {
@@ -36,5 +36,5 @@ pub(super) fn figure(moments: &[Moment]) -> Option<Figure> {
          Voronoi cells (at most 1 m around each, cut at walls and obstacles), and the mean speed of the agents over \
          that second, along straight lines.{shown}"
     );
-    Some(Figure { caption, svg: axes.finish("Speed against density"), is_wide: true })
+    Some(Figure { caption, svg: part_of_page("Speed against density", vec![frame]), is_wide: true })
 }
