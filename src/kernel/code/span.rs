@@ -52,9 +52,10 @@ pub(super) fn between(scene: &Scene, a: &Place, b: &Place) -> f64 {
         return 0.0;
     }
     let mut least = f64::INFINITY;
-    for p in &a.edges {
+    for way in scene.periods.images() {
         for q in &b.edges {
-            least = least.min(apart(p, q));
+            let q = Segment::new(q.a + way, q.b + way);
+            least = a.edges.iter().map(|p| apart(p, &q)).fold(least, f64::min);
         }
     }
     (least - a.radius - b.radius).max(0.0)
