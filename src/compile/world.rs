@@ -170,8 +170,11 @@ impl<'a> Elaborator<'a> {
         let clock = self.settle_clock(file, &mut told);
         self.told = if told == Told::Nothing && clock.is_ok() { Told::Whole } else { told };
         let variables = self.settle_variables();
+        self.settle_periods(file);
         for item in &file.items {
             if let Item::Tracks { name, file, body } = item {
+                let hint = "declare the agents one by one";
+                let _ = self.refuse_if_periodic(name.span, "recordings", hint);
                 self.tracks(name, file.as_ref(), body, files);
             }
         }
