@@ -24,8 +24,12 @@ impl Sum {
 
     /// Rounding of the forces and of their sum is all that may differ.
     pub(crate) fn assert_is(&self, found: Vec2, words: &str) {
+        self.assert_within(found, 1e-12, words);
+    }
+
+    pub(crate) fn assert_within(&self, found: Vec2, share: f64, words: &str) {
         let wanted = self.force;
-        assert!((found - wanted).norm() <= 1e-12 * self.size, "{words}: {found} instead of {wanted}");
+        assert!((found - wanted).norm() <= share * self.size, "{words}: {found} instead of {wanted}");
     }
 }
 

@@ -13,6 +13,9 @@ use crate::syntax::source::Span;
 /// densities, bodies of large groups).
 const SHORTEST: f64 = 3.0;
 
+/// Coordinates are smaller than this, m.
+const FARTHEST: f64 = 1e7;
+
 /// What lies outside of the range must not: a hair is rounding, m.
 const HAIR: f64 = 1e-9;
 
@@ -24,38 +27,47 @@ impl<'a> Elaborator<'a> {
             _ => None,
         });
         for item in items.flatten() {
-            if let SceneItem::Periodic { axis, ends, span } = item {
-                // A wrong one is reported; the scene is then taken as open.
-                let _ = self.period(axis, ends, *span);
+            if let SceneItem::Periodic { axis, ends, span } = item
+                && self.period(axis, ends, *span).is_err()
+            {
+                // Whatever it should be, all lies in it.
+                let all = Period { low: -FARTHEST, length: 2.0 * FARTHEST };
+                self.scene.periods.x = self.scene.periods.x.or(Some(all));
             }
         }
     }
 
     fn period(&mut self, axis: &Ident, ends: &[Expr; 2], span: Span) -> Lowered<()> {
+        let example = "write for example `periodic x in 0 m .. 20 m`";
         if !["x", "y"].contains(&axis.name.as_str()) {
             let text = format!("a scene is periodic along `x` or `y` (got `{}`)", axis.name);
-            let hint = "write for example `periodic x in 0 m .. 20 m`";
-            return self.report(Diagnostic::error(Code::E0410, axis.span, text).hint(hint));
+            return self.report(Diagnostic::error(Code::E0410, axis.span, text).hint(example));
         }
-        let length = |this: &mut Self, end: &Expr| {
+        let coordinate = |this: &mut Self, end: &Expr| {
             let number = this.number_of(end, Dimension::LENGTH, &Locals::default())?;
             this.in_reach(end.span, Vec2::new(number.value, 0.0)).map(|place| place.x)
         };
-        let (low, high) = (length(self, &ends[0]), length(self, &ends[1]));
-        let period = Period { low: low?, length: high? - low? };
-        if period.length < SHORTEST {
-            let length = period.length;
-            let text = format!("a period must be at least {SHORTEST} m long (got {length} m)");
-            let error = Diagnostic::error(Code::E0410, ends[0].span.to(ends[1].span), text);
-            return self
-                .report(error.hint("write the smaller coordinate first: `periodic x in 0 m .. 20 m`"));
+        let (low, high) = (coordinate(self, &ends[0]), coordinate(self, &ends[1]));
+        let (low, high) = (low?, high?);
+        let period = Period { low, length: high - low };
+        let wrong = if period.length <= 0.0 {
+            Some(format!("the range of a period must ascend (got {} .. {})", metres(low), metres(high)))
+        } else if period.length < SHORTEST {
+            Some(format!("a period must be at least {SHORTEST} m long (got {})", metres(period.length)))
+        } else {
+            None
+        };
+        if let Some(text) = wrong {
+            let range = ends[0].span.to(ends[1].span);
+            return self.report(Diagnostic::error(Code::E0410, range, text).hint(example));
         }
         let periods = &mut self.scene.periods;
         let known = if axis.name == "x" { &mut periods.x } else { &mut periods.y };
-        if known.replace(period).is_some() {
+        if known.is_some() {
             let text = format!("the period along `{}` is declared twice", axis.name);
             return self.report(Diagnostic::error(Code::E0410, span, text).hint("remove one of them"));
         }
+        *known = Some(period);
         Ok(())
     }
 
@@ -66,16 +78,13 @@ impl<'a> Elaborator<'a> {
             return Ok(p);
         }
         let periods = self.scene.periods;
-        let axes = [("x", periods.x, p.x), ("y", periods.y, p.y)];
-        let beyond = axes.iter().filter_map(|(axis, period, v)| Some((axis, period.as_ref()?, v)));
-        let beyond = beyond.filter(|(_, period, v)| **v < period.low || **v > period.high());
-        let text: Vec<String> = beyond
-            .map(|(axis, period, v)| {
-                let (low, high) = (period.low, period.high());
-                format!("{axis} = {v} m lies outside of the period {low} m .. {high} m")
-            })
-            .collect();
-        let error = Diagnostic::error(Code::E0410, span, text.join(", "));
+        let beyond = |axis: &str, period: Option<Period>, v: f64| {
+            let period = period.filter(|period| v < period.low || v > period.high())?;
+            let (low, high) = (metres(period.low), metres(period.high()));
+            Some(format!("{axis} = {} lies outside of the period {low} .. {high}", metres(v)))
+        };
+        let text = beyond("x", periods.x, p.x).or_else(|| beyond("y", periods.y, p.y));
+        let error = Diagnostic::error(Code::E0410, span, text.unwrap_or_default());
         self.report(error.hint("end at the ends of the period: what is there continues at the other end"))
     }
 
@@ -125,6 +134,11 @@ impl<'a> Elaborator<'a> {
         let start = Start { driving: Some(Vec2::new(1.0, 0.0)), turn: law?, own_speed: true, ..start? };
         Ok((start, Route::Onward))
     }
+}
+
+/// A length without noise of rounding.
+fn metres(length: f64) -> String {
+    format!("{} m", (length * 1e6).round() / 1e6)
 }
 
 /// Corners of a rectangle around a barrier.

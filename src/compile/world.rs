@@ -174,7 +174,10 @@ impl<'a> Elaborator<'a> {
         for item in &file.items {
             if let Item::Tracks { name, file, body } = item {
                 let hint = "declare the agents one by one";
-                let _ = self.refuse_if_periodic(name.span, "recordings", hint);
+                if self.refuse_if_periodic(name.span, "recordings", hint).is_err() {
+                    self.enter(name, Meaning::Doubtful);
+                    continue;
+                }
                 self.tracks(name, file.as_ref(), body, files);
             }
         }

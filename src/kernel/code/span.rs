@@ -52,10 +52,9 @@ pub(super) fn between(scene: &Scene, a: &Place, b: &Place) -> f64 {
         return 0.0;
     }
     let mut least = f64::INFINITY;
-    for way in scene.periods.images() {
+    for p in &a.edges {
         for q in &b.edges {
-            let q = Segment::new(q.a + way, q.b + way);
-            least = a.edges.iter().map(|p| apart(p, &q)).fold(least, f64::min);
+            least = least.min(apart(p, q));
         }
     }
     (least - a.radius - b.radius).max(0.0)
