@@ -39,15 +39,15 @@ impl<'a> Elaborator<'a> {
 
     fn period(&mut self, axis: &Ident, ends: &[Expr; 2], span: Span) -> Lowered<()> {
         let example = "write for example `periodic x in 0 m .. 20 m`";
-        if !["x", "y"].contains(&axis.name.as_str()) {
-            let text = format!("a scene is periodic along `x` or `y` (got `{}`)", axis.name);
-            return self.report(Diagnostic::error(Code::E0410, axis.span, text).hint(example));
-        }
         let coordinate = |this: &mut Self, end: &Expr| {
             let number = this.number_of(end, Dimension::LENGTH, &Locals::default())?;
             this.in_reach(end.span, Vec2::new(number.value, 0.0)).map(|place| place.x)
         };
         let (low, high) = (coordinate(self, &ends[0]), coordinate(self, &ends[1]));
+        if !["x", "y"].contains(&axis.name.as_str()) {
+            let text = format!("a scene is periodic along `x` or `y` (got `{}`)", axis.name);
+            return self.report(Diagnostic::error(Code::E0410, axis.span, text).hint(example));
+        }
         let (low, high) = (low?, high?);
         let period = Period { low, length: high - low };
         let wrong = if period.length <= 0.0 {
@@ -120,6 +120,8 @@ impl<'a> Elaborator<'a> {
             return Ok((start?, route?));
         };
         let law = self.law(&direction.value, Dimension::ANGLE, &Locals::default());
+        // A part that could not be read may have been the period.
+        let is_torn = self.torn.iter().any(|part| part.source == direction.name.span.source);
         let (wrong, hint) = if self.scene.periods.are_none() {
             (
                 Some("`direction` needs a periodic scene"),
@@ -128,7 +130,7 @@ impl<'a> Elaborator<'a> {
         } else {
             (field("route").map(|_| "an agent has a `direction` or a `route`, not both"), "remove `route`")
         };
-        if let Some(text) = wrong {
+        if let Some(text) = wrong.filter(|_| !is_torn) {
             return self.report(Diagnostic::error(Code::E0410, direction.name.span, text).hint(hint));
         }
         let start = Start { driving: Some(Vec2::new(1.0, 0.0)), turn: law?, own_speed: true, ..start? };

@@ -74,7 +74,7 @@ impl Cells {
                 end = put(0, Vec2::new(grid.x, grid.y), f64::NEG_INFINITY);
             }
         }
-        while end as usize % LANES > 0 {
+        while !(end as usize).is_multiple_of(LANES) {
             end = put(0, Vec2::new(grid.x, grid.y), f64::NEG_INFINITY);
         }
     }
