@@ -96,6 +96,8 @@ pub(super) struct Lanewise {
     /// Faces that can stand between any two, and those of them that are near one agent.
     dividing: Vec<u32>,
     dividing_near: Vec<u32>,
+    /// An agent and its images.
+    images: Vec<Agent>,
     stale: bool,
 }
 
@@ -244,18 +246,18 @@ impl Lanewise {
                 forces.surfaces.list_screens(&all, &mut self.dividing);
             }
         }
-        let ways = forces.periods.images();
-        let mut images: Vec<Agent> = Vec::with_capacity(ways.len());
+        let ways = if P::IS_CLOSED { forces.periods.images() } else { Vec::new() };
         for (i, one) in self.agents.iter().enumerate() {
             list.first.push(list.others.len() as u32);
+            // Where it may be, in the scene, before the list is made anew.
+            let images = &mut self.images;
             images.clear();
             images.push(*one);
-            // Where it may be, in the scene, before the list is made anew.
-            images.extend(ways[1..].iter().filter_map(|way| one.image(*way, &forces.periods)));
+            images.extend(ways.iter().skip(1).filter_map(|way| one.image(*way, &forces.periods)));
             let near_one = &mut self.dividing_near;
             near_one.clear();
             if !self.dividing.is_empty() {
-                for one in &images {
+                for one in images.iter() {
                     let near = forces.surfaces.nearby.find(&around(one, &farthest), &mut self.room);
                     near_one.extend(
                         near.iter().copied().filter(|face| self.dividing.binary_search(face).is_ok()),
@@ -298,7 +300,7 @@ impl Lanewise {
             }
             list.first_surface.push(list.surfaces.len() as u32);
             let from = list.surfaces.len();
-            for one in &images {
+            for one in images.iter() {
                 let around = around(one, &reaches[i]);
                 for &k in forces.surfaces.nearby.find(&around, &mut self.room) {
                     let mut near = false;
