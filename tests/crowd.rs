@@ -7,8 +7,8 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
-    Agent, Barrier, Body, Group, Kind, Law, Obstacle, Parameter, Particle, Position, Route, Scenario, Scene,
-    Start,
+    Agent, Barrier, Body, Group, Kind, Law, Obstacle, Parameter, Particle, Periods, Position, Route,
+    Scenario, Scene, Start,
 };
 use std::sync::Arc;
 
@@ -104,11 +104,12 @@ pub(crate) struct Crowd {
     pub people: Vec<Person>,
     pub obstacles: Vec<Obstacle>,
     pub groups: Vec<(Vec<u32>, f64)>,
+    pub periods: Periods,
     pub dt: &'static str,
 }
 
 pub(crate) fn crowd(people: Vec<Person>, dt: &'static str) -> Crowd {
-    Crowd { people, obstacles: Vec::new(), groups: Vec::new(), dt }
+    Crowd { people, obstacles: Vec::new(), groups: Vec::new(), periods: Periods::default(), dt }
 }
 
 pub(crate) fn wall(a: Vec2, b: Vec2) -> Obstacle {
@@ -142,7 +143,7 @@ impl Crowd {
             horizon: Tick(1_000_000),
             scene: Scene {
                 barriers: self.obstacles.iter().map(barrier).collect(),
-                regions: Vec::new(),
+                periods: self.periods,
                 ..Scene::default()
             },
             agents: self.people.iter().enumerate().map(agent).collect(),

@@ -11,7 +11,7 @@ const REACH: f64 = 16.0;
 
 /// A sum of forces, and the sum of their magnitudes, N.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+pub(crate) struct Sum {
     force: Vec2,
     size: f64,
 }
@@ -23,9 +23,13 @@ impl Sum {
     }
 
     /// Rounding of the forces and of their sum is all that may differ.
-    fn assert_is(&self, found: Vec2, words: &str) {
+    pub(crate) fn assert_is(&self, found: Vec2, words: &str) {
+        self.assert_within(found, 1e-12, words);
+    }
+
+    pub(crate) fn assert_within(&self, found: Vec2, share: f64, words: &str) {
         let wanted = self.force;
-        assert!((found - wanted).norm() <= 1e-12 * self.size, "{words}: {found} instead of {wanted}");
+        assert!((found - wanted).norm() <= share * self.size, "{words}: {found} instead of {wanted}");
     }
 }
 
@@ -52,7 +56,7 @@ fn of_walls(scene: &Crowd, one: &Person, sum: &mut Sum) {
 }
 
 /// Given-Wilson et al. 2017, equations (3) and (5) without contact, and the attraction of groups.
-fn plain(scene: &Crowd, i: usize) -> Sum {
+pub(crate) fn plain(scene: &Crowd, i: usize) -> Sum {
     let (one, mut sum) = (&scene.people[i], Sum::default());
     if !one.present {
         return sum;

@@ -40,6 +40,7 @@ mod mutation;
 mod nesting;
 mod pages;
 mod perception;
+mod periodic;
 mod planned;
 mod plans;
 mod processes;

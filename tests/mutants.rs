@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 27] = [
+const PAIRS: [(&str, &str); 28] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -35,6 +35,7 @@ const PAIRS: [(&str, &str); 27] = [
     pair!("leader"),
     pair!("overflow"),
     pair!("queue"),
+    pair!("ring"),
     pair!("robot"),
     pair!("sensors"),
     pair!("square"),

@@ -244,6 +244,13 @@ impl Elaborator<'_> {
 
     /// The body of a kind: every parameter must be known now.
     pub(super) fn body(&mut self, kind: &Kind, name: &Ident) -> Lowered<Body> {
+        if kind.base != model::Kind::Sfm {
+            self.refuse_if_periodic(
+                name.span,
+                "walkers that plan or step",
+                "use a kind that starts from `sfm`",
+            )?;
+        }
         let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());
         // A preferred speed follows from the largest one.
         let follows =

@@ -35,6 +35,7 @@ mod number;
 mod observed;
 mod parties;
 mod people;
+mod periodic;
 mod phrase;
 mod places;
 mod planners;

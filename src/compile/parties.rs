@@ -123,13 +123,15 @@ impl<'a> Elaborator<'a> {
             Some(_) => Ok(Start::at_rest(Vec2::zeros())),
         };
         let is_onward = decl.recorded.is_some() && !rest.iter().any(|field| field.name.name == "route");
-        let route = if is_onward { Ok(Route::Onward) } else { self.route_of(&rest) };
+        let headed =
+            if is_onward { start.map(|start| (start, Route::Onward)) } else { self.headed(&rest, start) };
         let attraction = self.of_group(&rest, "attraction", Dimension::FORCE, 0.0);
         let repulsion = self.of_group(&rest, "repulsion", Dimension::NONE, PARTICLE_REPULSION);
         let friction = self.of_group(&rest, "friction", Dimension::FRICTION, PARTICLE_FRICTION);
         let forces: &[&str] =
             if decl.particle.is_some() { &["repulsion", "friction"] } else { &["attraction"] };
-        let places: &[&str] = if decl.recorded.is_some() { &["route"] } else { &["at", "velocity", "route"] };
+        let places: &[&str] =
+            if decl.recorded.is_some() { &["route"] } else { &["at", "velocity", "route", "direction"] };
         self.only(&rest, &[places, forces].concat());
         let body = kind.and_then(|kind| {
             let meaning = kind.base.meaning();
@@ -146,16 +148,17 @@ impl<'a> Elaborator<'a> {
             self.body(&kind, &decl.kind)
         });
         let given = |name: &str| decl.body.iter().any(|field| field.name.name == name);
+        let (start, route) = headed?;
         let common = Common {
             body: body?,
-            route: route?,
+            route,
             attraction: attraction?,
             repulsion: repulsion?,
             friction: friction?,
             own: ["radius", "tau", "speed"].map(given),
             intended: intended?,
         };
-        Ok((common, rest, start?))
+        Ok((common, rest, start))
     }
 
     /// A number that a group has.

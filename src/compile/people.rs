@@ -126,10 +126,10 @@ impl<'a> Elaborator<'a> {
         let mut kind = kind;
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let start = self.start(&decl.name, &rest, people, true);
-        let route = self.route_of(&rest);
-        self.only(&rest, &["at", "velocity", "route"]);
+        let headed = self.headed(&rest, start);
+        self.only(&rest, &["at", "velocity", "route", "direction"]);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
-        let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
+        let (Ok(count), Ok(body), Ok((start, route))) = (count, body, headed) else {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };

@@ -133,7 +133,8 @@ impl Elaborator<'_> {
     /// Refuses the starts that no trial can make.
     pub(super) fn check_places(&mut self, people: &People) {
         let scene = self.scene.clone();
-        let barriers = solids(&scene.barriers);
+        let unrolled = scene.unrolled();
+        let barriers = solids(&unrolled);
         let mut points: BTreeMap<(i64, i64), AgentId> = BTreeMap::new();
         let mut near: BTreeMap<AgentId, Vec<(AgentId, f64)>> = BTreeMap::new();
         // The last declaration about which something was said.

@@ -45,7 +45,7 @@ impl<'a> Elaborator<'a> {
                     self.scene.lines.push(Line { name: name.name.clone(), segment: nowhere });
                     self.enter(name, Meaning::Line(id));
                 }
-                SceneItem::Import { .. } => {}
+                SceneItem::Import { .. } | SceneItem::Periodic { .. } => {}
             }
         }
     }
@@ -96,9 +96,12 @@ impl<'a> Elaborator<'a> {
                 SceneItem::Import { path, walkable, filter, fields, .. } => {
                     imports.push(Import { path, walkable: *walkable, filter: filter.as_ref(), fields });
                 }
+                SceneItem::Periodic { .. } => {}
             }
         }
+        let first = self.scene.barriers.len();
         self.import_all(&imports, files);
+        self.check_imported(items, first);
     }
 
     /// The shape of a region, settled when it is first needed.
@@ -185,8 +188,8 @@ impl<'a> Elaborator<'a> {
                     ));
                 }
                 let circle = Shape::Circle { centre: middle?, radius: size.value };
-                self.in_reach(*span, circle.bounds().low)?;
-                self.in_reach(*span, circle.bounds().high)?;
+                self.in_scene(*span, circle.bounds().low)?;
+                self.in_scene(*span, circle.bounds().high)?;
                 Ok(circle)
             }
             ShapeExpr::Rectangle { a, b, span } => {
@@ -258,7 +261,7 @@ impl<'a> Elaborator<'a> {
         if x.dimension != Dimension::LENGTH {
             return self.wrong_dimension(span, Dimension::LENGTH, x.dimension);
         }
-        self.in_reach(span, Vec2::new(x.value, y.value))
+        self.in_scene(span, Vec2::new(x.value, y.value))
     }
 
     /// A point that a scene can have: rounding swallows the steps of people far from the origin.

@@ -33,7 +33,9 @@ impl<'a> Elaborator<'a> {
         let mut with = self.with(&decl.name, &decl.with);
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let start = self.start(&decl.name, &rest, people, true);
-        let route = self.way_out(decl, &rest);
+        let hint = "declare agents: they are there from the beginning";
+        let route = self.refuse_if_periodic(decl.name.span, "sources", hint);
+        let route = route.and_then(|()| self.way_out(decl, &rest));
         let every = self.interval(decl, &rest);
         let limit = self.limit(&rest);
         self.only(&rest, &["at", "every", "route", "limit", "velocity"]);

@@ -21,6 +21,7 @@ const MOST_PATHS: i64 = 64;
 impl<'a> Elaborator<'a> {
     /// A route as written.
     pub(super) fn route(&mut self, value: &Value, locals: &Locals) -> Lowered<Route> {
+        self.refuse_if_periodic(value_span(value), "routes", "write `direction = 0 deg` in the agent")?;
         match value {
             Value::Plain(expr) => {
                 let goal = self.goal(expr, locals)?;

@@ -170,8 +170,14 @@ impl<'a> Elaborator<'a> {
         let clock = self.settle_clock(file, &mut told);
         self.told = if told == Told::Nothing && clock.is_ok() { Told::Whole } else { told };
         let variables = self.settle_variables();
+        self.settle_periods(file);
         for item in &file.items {
             if let Item::Tracks { name, file, body } = item {
+                let hint = "declare the agents one by one";
+                if self.refuse_if_periodic(name.span, "recordings", hint).is_err() {
+                    self.enter(name, Meaning::Doubtful);
+                    continue;
+                }
                 self.tracks(name, file.as_ref(), body, files);
             }
         }

@@ -37,12 +37,13 @@ use super::rest::{back, rest};
 use super::start;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
+use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::model::TOP_SPEED;
+use crate::model::{Periods, TOP_SPEED};
 
 /// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
 /// one after `refresh` changes no bit.
@@ -138,6 +139,9 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
         return;
     }
     dispatch!(scratch.level, simd => move_on(simd, program, state, scratch));
+    if !program.forces.periods.are_none() {
+        wrap(&program.forces.periods, state, &scratch.moving);
+    }
     for lane in state.occupied.iter() {
         state.ticks[lane] += 1;
     }
@@ -206,6 +210,20 @@ fn keep_forces<S: Simd>(simd: S, state: &mut State, scratch: &Scratch, lanes: Ma
             part.store_in(here, part.load(&sum.x), &mut state.motion.fx[block]);
             part.store_in(here, part.load(&sum.y), &mut state.motion.fy[block]);
             part.store_in(here, part.load(&sum.slowness), &mut state.driving.slowness[block]);
+        }
+    }
+}
+
+/// Brings those who have left the scene of a closed plane back into it, with the places where they rest.
+fn wrap(periods: &Periods, state: &mut State, moving: &[Mask]) {
+    let (motion, driving) = (&mut state.motion, &mut state.driving);
+    for (block, moving) in moving.iter().enumerate() {
+        for lane in moving.iter() {
+            let p = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
+            let image = periods.wrap(p);
+            (motion.x[block].0[lane], motion.y[block].0[lane]) = (image.x, image.y);
+            driving.rest_x[block].0[lane] += image.x - p.x;
+            driving.rest_y[block].0[lane] += image.y - p.y;
         }
     }
 }

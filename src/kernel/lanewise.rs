@@ -9,6 +9,7 @@ use super::contact::Contacts;
 use super::force::pair::{Block, Pair, PairTerm, Sum};
 use super::force::walls::{self, AtWalls};
 use super::force::{Forces, with_pair_terms};
+use super::plane::{Open, Plane};
 use super::state::State;
 use super::vector::{Doubles, Part, larger, parts};
 use crate::base::geometry::amply_around;
@@ -16,7 +17,7 @@ use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math::at_least;
 use crate::base::random::TrialKey;
-use crate::model::Parameter;
+use crate::model::{Parameter, Periods};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -37,6 +38,20 @@ impl Agent {
     fn places(&self) -> impl Iterator<Item = Vec2> + '_ {
         let present = (0..LANES).filter(|&lane| self.r.0[lane] > f64::NEG_INFINITY);
         present.map(|lane| Vec2::new(self.x.0[lane], self.y.0[lane]))
+    }
+
+    /// Its image in the lanes in which that is in the scene, or will be before anybody has gone too far; none without any.
+    fn image(&self, way: Vec2, periods: &Periods) -> Option<Self> {
+        let mut out = *self;
+        for lane in 0..LANES {
+            let p = Vec2::new(self.x.0[lane], self.y.0[lane]) + way;
+            (out.x.0[lane], out.y.0[lane]) = (p.x, p.y);
+            if !periods.hold(p, SLACK) {
+                out.r.0[lane] = f64::NEG_INFINITY;
+            }
+        }
+        let is_anywhere = out.places().next().is_some();
+        is_anywhere.then_some(out)
     }
 }
 
@@ -81,6 +96,8 @@ pub(super) struct Lanewise {
     /// Faces that can stand between any two, and those of them that are near one agent.
     dividing: Vec<u32>,
     dividing_near: Vec<u32>,
+    /// An agent and its images.
+    images: Vec<Agent>,
     stale: bool,
 }
 
@@ -100,12 +117,10 @@ impl Lanewise {
         sums: &mut Vec<Sum>,
         contacts: &mut Contacts,
     ) {
-        with_pair_terms!(forces, term, self.prepare(simd, term, forces.margin, state));
-        if self.is_outdated(simd, state) {
-            simd.vectorize(
-                #[inline(always)]
-                || self.find_neighbours(simd, forces, state),
-            );
+        with_pair_terms!(forces, term, _, self.prepare(simd, term, forces.margin, state));
+        match forces.closed {
+            None => self.look_around(simd, Open, forces, state),
+            Some(plane) => self.look_around(simd, plane, forces, state),
         }
         sums.clear();
         sums.resize(state.agents, Sum::default());
@@ -114,9 +129,10 @@ impl Lanewise {
         with_pair_terms!(
             forces,
             term,
+            plane,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, term, forces, sums, contacts),
+                || self.pairs(simd, (term, plane), forces, sums, contacts),
             )
         );
         simd.vectorize(
@@ -124,6 +140,17 @@ impl Lanewise {
             || self.walls(simd, forces, state, sums, contacts),
         );
         forces.add_cohesion(state, sums);
+    }
+
+    /// Makes the list anew where somebody has gone too far.
+    #[inline(always)]
+    fn look_around<S: Simd, P: Plane>(&mut self, simd: S, plane: P, forces: &Forces, state: &State) {
+        if self.is_outdated(simd, plane, state) {
+            simd.vectorize(
+                #[inline(always)]
+                || self.find_neighbours(simd, plane, forces, state),
+            );
+        }
     }
 
     #[inline(always)]
@@ -155,7 +182,7 @@ impl Lanewise {
     }
 
     #[inline(always)]
-    fn is_outdated<S: Simd>(&mut self, simd: S, state: &State) -> bool {
+    fn is_outdated<S: Simd, P: Plane>(&mut self, simd: S, plane: P, state: &State) -> bool {
         let old = &self.neighbours;
         if self.stale || old.x.len() != state.agents || old.keys != state.keys {
             return true;
@@ -172,6 +199,7 @@ impl Lanewise {
             for i in 0..state.agents {
                 let dx = part.load(&state.motion.x[i]) - part.load(&old.x[i]);
                 let dy = part.load(&state.motion.y[i]) - part.load(&old.y[i]);
+                let (dx, dy) = plane.way(part, (dx, dy));
                 farthest = larger::<S>(dx * dx + dy * dy, farthest);
             }
             if farthest.simd_gt(part.c(SLACK * SLACK)).any_true() {
@@ -182,7 +210,7 @@ impl Lanewise {
     }
 
     #[inline(always)]
-    fn find_neighbours<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State) {
+    fn find_neighbours<S: Simd, P: Plane>(&mut self, simd: S, plane: P, forces: &Forces, state: &State) {
         let list = &mut self.neighbours;
         self.stale = false;
         list.keys = state.keys;
@@ -201,12 +229,6 @@ impl Lanewise {
         let mut farthest = Lanes::ZERO;
         self.dividing.clear();
         if !forces.surfaces.is_empty() {
-            let all = self.agents.iter().flat_map(Agent::places);
-            if let Some(Bounds { low, high }) = Bounds::around(all) {
-                let slack = Vec2::repeat(SLACK);
-                let all = Bounds { low: low - slack, high: high + slack };
-                forces.surfaces.list_screens(&all, &mut self.dividing);
-            }
             for part in parts(simd) {
                 let mut far = part.c(0.0);
                 for (reach, one) in reaches.iter().zip(&self.agents) {
@@ -214,21 +236,41 @@ impl Lanewise {
                 }
                 part.store(far, &mut farthest);
             }
+            let all = self.agents.iter().flat_map(Agent::places);
+            if let Some(Bounds { low, high }) = Bounds::around(all) {
+                let slack = Vec2::repeat(SLACK);
+                // Whoever is felt across the end of a period is that far beyond it.
+                let beyond = farthest.0.into_iter().fold(0.0, |a, b| if b > a { b } else { a });
+                let slack = if P::IS_CLOSED { slack + Vec2::repeat(beyond) } else { slack };
+                let all = Bounds { low: low - slack, high: high + slack };
+                forces.surfaces.list_screens(&all, &mut self.dividing);
+            }
         }
+        let ways = if P::IS_CLOSED { forces.periods.images() } else { Vec::new() };
         for (i, one) in self.agents.iter().enumerate() {
             list.first.push(list.others.len() as u32);
+            // Where it may be, in the scene, before the list is made anew.
+            let images = &mut self.images;
+            images.clear();
+            images.push(*one);
+            images.extend(ways.iter().skip(1).filter_map(|way| one.image(*way, &forces.periods)));
             let near_one = &mut self.dividing_near;
             near_one.clear();
             if !self.dividing.is_empty() {
-                let near = forces.surfaces.nearby.find(&around(one, &farthest), &mut self.room);
-                near_one
-                    .extend(near.iter().copied().filter(|face| self.dividing.binary_search(face).is_ok()));
+                for one in images.iter() {
+                    let near = forces.surfaces.nearby.find(&around(one, &farthest), &mut self.room);
+                    near_one.extend(
+                        near.iter().copied().filter(|face| self.dividing.binary_search(face).is_ok()),
+                    );
+                }
+                arrange(near_one, 0, images.len());
             }
             for (j, other) in self.agents.iter().enumerate().skip(i + 1) {
                 let mut near = false;
                 for part in parts(simd) {
                     let dx = part.load(&one.x) - part.load(&other.x);
                     let dy = part.load(&one.y) - part.load(&other.y);
+                    let (dx, dy) = plane.way(part, (dx, dy));
                     let touch = part.load(&one.r) + part.load(&other.r);
                     let reach = larger::<S>(part.load(&reaches[i]), part.load(&reaches[j]));
                     let limit = larger::<S>(touch + reach, part.c(0.0));
@@ -239,29 +281,41 @@ impl Lanewise {
                     if !self.dividing.is_empty() {
                         list.first_screen.push(list.screens.len() as u32);
                         list.screens.extend(near_one.iter().copied().filter(|&face| {
-                            parts(simd).any(|part| {
-                                let place = (part.load(&one.x), part.load(&one.y));
-                                let there = (part.load(&other.x), part.load(&other.y));
-                                forces.surfaces.may_hide(face, part, place, there, SLACK).any_true()
+                            images.iter().any(|one| {
+                                parts(simd).any(|part| {
+                                    let place = (part.load(&one.x), part.load(&one.y));
+                                    let there = (part.load(&other.x), part.load(&other.y));
+                                    let there = if P::IS_CLOSED {
+                                        let way = plane.way(part, (place.0 - there.0, place.1 - there.1));
+                                        (place.0 - way.0, place.1 - way.1)
+                                    } else {
+                                        there
+                                    };
+                                    forces.surfaces.may_hide(face, part, place, there, SLACK).any_true()
+                                })
                             })
                         }));
                     }
                 }
             }
             list.first_surface.push(list.surfaces.len() as u32);
-            let around = around(one, &reaches[i]);
-            for &k in forces.surfaces.nearby.find(&around, &mut self.room) {
-                let mut near = false;
-                for part in parts(simd) {
-                    let limit = larger::<S>(part.load(&one.r) + part.load(&reaches[i]), part.c(0.0));
-                    let (x, y) = (part.load(&one.x), part.load(&one.y));
-                    let square = forces.surfaces.squared_distance_to_bounds(k, part, x, y);
-                    near |= square.simd_lt(limit * limit).any_true();
-                }
-                if near {
-                    list.surfaces.push(k);
+            let from = list.surfaces.len();
+            for one in images.iter() {
+                let around = around(one, &reaches[i]);
+                for &k in forces.surfaces.nearby.find(&around, &mut self.room) {
+                    let mut near = false;
+                    for part in parts(simd) {
+                        let limit = larger::<S>(part.load(&one.r) + part.load(&reaches[i]), part.c(0.0));
+                        let (x, y) = (part.load(&one.x), part.load(&one.y));
+                        let square = forces.surfaces.squared_distance_to_bounds(k, part, x, y);
+                        near |= square.simd_lt(limit * limit).any_true();
+                    }
+                    if near {
+                        list.surfaces.push(k);
+                    }
                 }
             }
+            arrange(&mut list.surfaces, from, images.len());
         }
         list.first.push(list.others.len() as u32);
         list.first_surface.push(list.surfaces.len() as u32);
@@ -274,10 +328,10 @@ impl Lanewise {
 
     /// Forces between agents.
     #[inline(always)]
-    fn pairs<S: Simd, T: PairTerm>(
+    fn pairs<S: Simd, T: PairTerm, P: Plane>(
         &self,
         simd: S,
-        term: T,
+        (term, plane): (T, P),
         forces: &Forces,
         sums: &mut [Sum],
         contacts: &mut Contacts,
@@ -299,14 +353,18 @@ impl Lanewise {
                 for at in first[i] as usize..first[i + 1] as usize {
                     let j = others[at];
                     let other = &agents[j as usize];
-                    let way = (x - part.load(&other.x), y - part.load(&other.y));
+                    let way = plane.way(part, (x - part.load(&other.x), y - part.load(&other.y)));
                     let mut pair = Pair::new(part, way, r + part.load(&other.r));
                     let touching = pair.gap.simd_gt(minus_margin);
                     if touching.any_true() {
                         contacts.push_pair(i as u32, j, part.bits(touching));
                     }
                     if let Some(screens) = self.neighbours.screens_of(at) {
-                        let there = (part.load(&other.x), part.load(&other.y));
+                        let there = if P::IS_CLOSED {
+                            (x - way.0, y - way.1)
+                        } else {
+                            (part.load(&other.x), part.load(&other.y))
+                        };
                         let hidden = forces.surfaces.hide(screens, part, (x, y), there);
                         pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
                     }
@@ -373,6 +431,16 @@ fn load<S: Simd, T: PairTerm>(part: Part<S>, kept: &[Lanes], agent: usize) -> T:
         #[inline(always)]
         |k| part.load(&kept[k]),
     )
+}
+
+/// Puts what several images have listed from a place on into order, each once.
+fn arrange(list: &mut Vec<u32>, from: usize, images: usize) {
+    if images > 1 {
+        let mut tail = list.split_off(from);
+        tail.sort_unstable();
+        tail.dedup();
+        list.append(&mut tail);
+    }
 }
 
 /// A rectangle around all that an agent can reach in any lane, amply.

@@ -22,6 +22,7 @@ mod pace;
 mod parameters;
 mod passing;
 pub mod plan;
+mod plane;
 pub mod process;
 pub mod program;
 mod rest;

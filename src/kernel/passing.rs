@@ -8,7 +8,7 @@ use super::code::lanes::{Vector, narrow};
 use super::state::{Passages, Slot, State};
 use crate::base::geometry::{Segment, Vec2, cross};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::model::{LineId, RegionId, Scene};
+use crate::model::{LineId, Periods, RegionId, Scene};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 /// What is nearer to a line than this is on it, m.
@@ -18,6 +18,9 @@ const ON_LINE: f64 = 1e-5;
 #[derive(Clone, Debug, Default)]
 pub struct Passing {
     lines: Vec<(LineId, Segment)>,
+    periods: Periods,
+    /// How far images are.
+    ways: Vec<Vec2>,
     regions: Vec<(RegionId, Ground)>,
 }
 
@@ -26,7 +29,8 @@ impl Passing {
     pub fn new(scene: &Scene) -> Self {
         let lines = scene.counted.iter().map(|id| (*id, scene.lines[id.0 as usize].segment));
         let regions = scene.timed.iter().map(|id| (*id, Ground::region(&scene.regions[id.0 as usize].shape)));
-        Self { lines: lines.collect(), regions: regions.collect() }
+        let (periods, ways) = (scene.periods, scene.periods.images());
+        Self { lines: lines.collect(), periods, ways, regions: regions.collect() }
     }
 
     /// Whether no formula asks about any.
@@ -37,7 +41,7 @@ impl Passing {
     /// After a step of the slots `moved`, which began it at `x` and `y`.
     pub(super) fn step(&self, level: Level, state: &mut State, (x, y): (&[Lanes], &[Lanes]), moved: &[Mask]) {
         for (line, segment) in &self.lines {
-            cross_line(state, (*line, segment), (x, y), moved);
+            cross_line(state, (*line, segment), (&self.periods, &self.ways), (x, y), moved);
         }
         if !self.regions.is_empty() {
             dispatch!(level, simd => self.stay(simd, &mut state.passages, (x, y), moved));
@@ -60,6 +64,7 @@ impl Passing {
 fn cross_line(
     state: &mut State,
     (line, segment): (LineId, &Segment),
+    (periods, ways): (&Periods, &[Vec2]),
     (x, y): (&[Lanes], &[Lanes]),
     moved: &[Mask],
 ) {
@@ -70,12 +75,17 @@ fn cross_line(
             let from = Vec2::new(x[block].0[lane], y[block].0[lane]);
             let motion = &state.motion;
             let to = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
-            // Most stay on one side.
-            let (side, end) = (cross(along, from - segment.a), cross(along, to - segment.a));
-            if side.min(end) > margin || side.max(end) < -margin {
-                continue;
-            }
-            if is_crossed(segment, from, to) {
+            let is_crossed = if ways.len() > 1 {
+                // The end of a step may be an image of where it led.
+                let end = from + periods.way(to - from);
+                ways.iter().any(|way| is_crossed(segment, from + way, end + way))
+            } else {
+                // Most stay on one side.
+                let (side, end) = (cross(along, from - segment.a), cross(along, to - segment.a));
+                let is_aside = side.min(end) > margin || side.max(end) < -margin;
+                !is_aside && is_crossed(segment, from, to)
+            };
+            if is_crossed {
                 let trial = state.layout.trial_of(lane);
                 let now = (trial, state.ticks[trial]);
                 state.passages.cross(line, Slot { block, lane }, now);

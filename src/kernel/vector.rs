@@ -132,6 +132,12 @@ impl<S: Simd> Part<S> {
     }
 }
 
+/// The nearest whole number, of numbers below 2^51.
+#[inline(always)]
+pub(super) fn nearest_whole<S: Simd>(part: Part<S>, x: Doubles<S>) -> Doubles<S> {
+    (x + part.c(ROUND)) - part.c(ROUND)
+}
+
 /// The smaller of two; the second where one is no number.
 #[inline(always)]
 pub(super) fn smaller<S: Simd>(a: Doubles<S>, b: Doubles<S>) -> Doubles<S> {

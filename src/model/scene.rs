@@ -1,6 +1,8 @@
 //! The scene: what stands still.
 
+use super::period::Periods;
 use crate::base::geometry::{Segment, Shape, Vec2};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// Index of a region of the scene.
@@ -18,6 +20,8 @@ pub struct LineId(pub u32);
 /// The fixed parts of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
+    /// Along which axes the plane closes on itself.
+    pub periods: Periods,
     /// Walls and obstacles.
     pub barriers: Vec<Barrier>,
     /// Regions, which do not block agents.
@@ -30,6 +34,18 @@ pub struct Scene {
     pub counted: BTreeSet<LineId>,
     /// The regions in which a formula measures how long somebody has been.
     pub timed: BTreeSet<RegionId>,
+}
+
+impl Scene {
+    /// The barriers, and behind them their images one period away, all in the same order: what is seen and felt from a place
+    /// of the scene.
+    pub fn unrolled(&self) -> Cow<'_, [Barrier]> {
+        if self.periods.are_none() {
+            return Cow::Borrowed(&self.barriers);
+        }
+        let images = self.periods.images();
+        images.iter().flat_map(|way| self.barriers.iter().map(|barrier| barrier.moved(*way))).collect()
+    }
 }
 
 /// A line at which agents are counted.
@@ -69,6 +85,17 @@ pub struct Region {
 }
 
 impl Barrier {
+    /// The same somewhere else.
+    fn moved(&self, way: Vec2) -> Self {
+        let obstacle = match &self.obstacle {
+            Obstacle::Wall(segments) => {
+                Obstacle::Wall(segments.iter().map(|s| Segment::new(s.a + way, s.b + way)).collect())
+            }
+            Obstacle::Solid(shape) => Obstacle::Solid(shape.moved(way)),
+        };
+        Self { name: self.name.clone(), obstacle }
+    }
+
     /// Its name in texts: the wall `south`, an obstacle.
     pub fn phrase(&self) -> String {
         let (what, article) = match self.obstacle {

@@ -80,7 +80,7 @@ impl Sight {
     /// Of a scene.
     pub fn new(scene: &Scene) -> Self {
         let mut pieces = Vec::new();
-        for barrier in &scene.barriers {
+        for barrier in scene.unrolled().iter() {
             match &barrier.obstacle {
                 Obstacle::Wall(segments) => pieces.extend(segments.iter().copied().map(Piece::Edge)),
                 Obstacle::Solid(Shape::Polygon(polygon)) => {

@@ -91,10 +91,16 @@ fn scene(out: &mut String, scenario: &Scenario) {
         && scene.regions.is_empty()
         && scene.points.is_empty()
         && scene.lines.is_empty()
+        && scene.periods.are_none()
     {
         return;
     }
     let _ = writeln!(out, "\nScene");
+    for (axis, period) in [("x", scene.periods.x), ("y", scene.periods.y)] {
+        if let Some(period) = period {
+            let _ = writeln!(out, "  periodic {axis}: {} .. {} m", number(period.low), number(period.high()));
+        }
+    }
     for barrier in &scenario.scene.barriers {
         let name = if barrier.name.is_empty() { String::new() } else { format!(" {}", barrier.name) };
         let _ = match &barrier.obstacle {
@@ -247,7 +253,14 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
         }
     };
     let _ = writeln!(out, "      starts {place}, {}", velocity(agent.start.velocity));
-    let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+    let has_direction = !scenario.scene.periods.are_none() && agent.route == Route::Onward;
+    let _ = match &agent.start.turn {
+        Law::Constant(turn) if has_direction => {
+            writeln!(out, "      walks in the direction {} deg", number(turn.to_degrees()))
+        }
+        turn if has_direction => writeln!(out, "      walks in the direction {}", law(turn, "rad")),
+        _ => writeln!(out, "      {}", way(scenario, &agent.route)),
+    };
     if agent.start.turn != Law::Constant(0.0) {
         let _ = writeln!(out, "      turned from the recorded heading by {}", law(&agent.start.turn, "rad"));
     }

@@ -74,6 +74,17 @@ impl Shape {
         }
     }
 
+    /// The same shape somewhere else.
+    pub fn moved(&self, way: Vec2) -> Self {
+        let ring = |corners: &Vec<Vec2>| corners.iter().map(|corner| corner + way).collect();
+        match self {
+            Self::Circle { centre, radius } => Self::Circle { centre: centre + way, radius: *radius },
+            Self::Polygon(Polygon { outline, holes }) => {
+                Self::Polygon(Polygon { outline: ring(outline), holes: holes.iter().map(ring).collect() })
+            }
+        }
+    }
+
     /// Its area.
     pub fn area(&self) -> f64 {
         match self {

@@ -70,12 +70,12 @@ const DECLARES: [&str; 22] = [
     "on",
 ];
 /// Words that start what has no name of its own.
-const NAMELESS: [&str; 13] = [
-    "after", "check", "choose", "compare", "estimate", "family", "heading", "import", "moves", "rank",
-    "scene", "stop", "when",
+const NAMELESS: [&str; 14] = [
+    "after", "check", "choose", "compare", "estimate", "family", "heading", "import", "moves", "periodic",
+    "rank", "scene", "stop", "when",
 ];
 /// Words that start a part of a scene.
-const SCENERY: [&str; 6] = ["import", "line", "obstacle", "point", "region", "wall"];
+const SCENERY: [&str; 7] = ["import", "line", "obstacle", "periodic", "point", "region", "wall"];
 /// Words that start what has no part in a clock, and words that have.
 const TIMELESS: [&str; 12] = [
     "const", "kind", "label", "let", "line", "obstacle", "param", "point", "region", "tracks", "var", "wall",

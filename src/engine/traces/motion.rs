@@ -5,7 +5,7 @@ use crate::base::lanes::Lanes;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::plan::Plan;
 use crate::kernel::{Slot, State};
-use crate::model::{AgentId, Parameter, Scenario};
+use crate::model::{AgentId, Parameter, Period, Scenario};
 use std::sync::Arc;
 
 /// Time between two frames, s: the largest whole number of steps that is not longer, but one step at least.
@@ -138,7 +138,9 @@ impl Motion {
         let person = state.queues.later(agent, 0);
         self.numbers += 2;
         match self.open[agent] {
-            Some((track, last)) if last == person => self.tracks[track].points.push(place),
+            Some((track, last)) if last == person && !self.jumps(scenario, track, place) => {
+                self.tracks[track].points.push(place);
+            }
             _ => {
                 let arrival = state.queues.arrival(&scenario.sources, AgentId(agent as u32), 0);
                 self.open[agent] = Some((self.tracks.len(), person));
@@ -152,6 +154,16 @@ impl Motion {
             }
         }
         self.see_plan(state, (agent, slot), place);
+    }
+
+    /// Whether a track leaves a periodic scene at one end for the other: it goes on as a track of its own.
+    fn jumps(&self, scenario: &Scenario, track: usize, [x, y]: Millimetres) -> bool {
+        let jumps = |period: Option<Period>, way: i32| {
+            period.is_some_and(|period| f64::from(way.abs()) > 500.0 * period.length)
+        };
+        let periods = scenario.scene.periods;
+        let Some([old_x, old_y]) = self.tracks[track].points.last() else { return false };
+        jumps(periods.x, x - old_x) || jumps(periods.y, y - old_y)
     }
 
     fn see_plan(&mut self, state: &State, (agent, slot): (usize, Slot), place: Millimetres) {

@@ -9,6 +9,7 @@
 //! reach and add zero. An agent's own vectors are summed over eight logical lanes whatever the width of the
 //! machine; what others add to it comes in their order.
 
+mod images;
 mod pairs;
 mod reach;
 mod walls;
@@ -22,6 +23,7 @@ use super::vector::parts;
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::LANES;
 use fearless_simd::Simd;
+use images::Images;
 use pairs::{Task, Touch};
 use reach::{Reach, Sorted};
 
@@ -30,6 +32,7 @@ use reach::{Reach, Sorted};
 pub(super) struct Cells {
     /// The order of the agents, which that of the columns and of the forces follows.
     index: Index,
+    images: Images,
     /// What the terms between two bodies keep of each agent: a column for each number.
     columns: Vec<Vec<f64>>,
     /// The forces.
@@ -77,15 +80,17 @@ impl Cells {
         if !state.occupied.has(0) {
             return;
         }
-        let reach = with_pair_terms!(forces, term, Reach::of(simd, term, forces.margin, state));
+        let reach = with_pair_terms!(forces, term, _, Reach::of(simd, term, forces.margin, state));
         self.edge = reach.edge;
         simd.vectorize(
             #[inline(always)]
             || self.index.sort(simd, &reach.extent, Grid::new(&reach.extent, reach.cell(), state), state),
         );
+        self.add_images(&reach, &forces.periods);
         with_pair_terms!(
             forces,
             term,
+            _,
             simd.vectorize(
                 #[inline(always)]
                 || self.keep(simd, term, state),
@@ -96,9 +101,10 @@ impl Cells {
         with_pair_terms!(
             forces,
             term,
+            plane,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, term, forces, contacts),
+                || self.pairs(simd, &reach, (term, plane), forces, contacts),
             )
         );
         simd.vectorize(
@@ -115,7 +121,8 @@ impl Cells {
         self.dividing.clear();
         if !forces.surfaces.is_empty() {
             let strips = (0..self.index.grid.strips).flat_map(|strip| self.index.strip(strip));
-            let all = Bounds::around(strips.map(|at| Vec2::new(self.index.x[at], self.index.y[at])));
+            let all = strips.chain(self.image_places().filter(|&at| self.index.r[at] > f64::NEG_INFINITY));
+            let all = Bounds::around(all.map(|at| Vec2::new(self.index.x[at], self.index.y[at])));
             if let Some(all) = all {
                 forces.surfaces.list_screens(&all, &mut self.dividing);
             }
@@ -133,6 +140,16 @@ impl Cells {
                 if let Some(slowness) = self.slowness.get(at) {
                     sum.slowness.0[agent % LANES] = *slowness;
                 }
+            }
+        }
+        for at in self.image_places().filter(|&at| self.index.r[at] > f64::NEG_INFINITY) {
+            let agent = self.index.agent[at] as usize;
+            let (sum, lane) = (&mut sums[agent / LANES], agent % LANES);
+            sum.x.0[lane] += self.fx[at];
+            sum.y.0[lane] += self.fy[at];
+            if let Some(&slowness) = self.slowness.get(at) {
+                let most = &mut sum.slowness.0[lane];
+                *most = if slowness > *most { slowness } else { *most };
             }
         }
     }

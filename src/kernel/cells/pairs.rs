@@ -11,6 +11,7 @@ use crate::kernel::contact::Contacts;
 use crate::kernel::force::Forces;
 use crate::kernel::force::pair::{Pair, PairTerm, Sum};
 use crate::kernel::near::low_bits;
+use crate::kernel::plane::Plane;
 use crate::kernel::vector::{first_part, larger, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -37,11 +38,11 @@ pub(super) struct Touch {
 impl Cells {
     /// All forces between agents.
     #[inline(always)]
-    pub(super) fn pairs<S: Simd, T: PairTerm>(
+    pub(super) fn pairs<S: Simd, T: PairTerm, P: Plane>(
         &mut self,
         simd: S,
         reach: &Reach,
-        term: T,
+        of: (T, P),
         forces: &Forces,
         contacts: &mut Contacts,
     ) {
@@ -49,7 +50,7 @@ impl Cells {
             self.list(simd, reach, strip);
             let from = self.index.strip(strip).start;
             self.list_screens(reach, forces, strip);
-            let found = self.work_off(simd, term, (forces, reach.most), from);
+            let found = self.work_off(simd, of, (forces, reach.most), from);
             let agent = &self.index.agent;
             for touch in &self.touches[..found] {
                 for lane in touch.lanes.iter() {
@@ -79,6 +80,7 @@ impl Cells {
         self.own.clear();
         self.own.resize(here.len(), Sum::default());
         self.tasks.clear();
+        let is_closed = !self.image_places().is_empty();
         let tasks = &mut self.tasks;
         let mut push = |one: usize, from: u32, to: u32| {
             let (one, mut others, mut lane) = (one as u32, from, 0);
@@ -111,6 +113,13 @@ impl Cells {
                     let from = above[low_bits(left.0[lane]) as usize];
                     push(i - here.start, from, above[low_bits(right.0[lane]) as usize + 1]);
                 }
+                if is_closed {
+                    let (x, reach) = (self.index.x[i], all.most);
+                    let columns = (grid.column_of(x - reach), grid.column_of(x + reach));
+                    for (from, to) in self.images.near(row, strip, columns) {
+                        push(i - here.start, from, to);
+                    }
+                }
             }
         }
         if self.touches.len() <= self.tasks.len() {
@@ -138,10 +147,10 @@ impl Cells {
 
     /// Works the list off. Gives how many touches were found.
     #[inline(always)]
-    fn work_off<S: Simd, T: PairTerm>(
+    fn work_off<S: Simd, T: PairTerm, P: Plane>(
         &mut self,
         simd: S,
-        term: T,
+        (term, plane): (T, P),
         (forces, reach): (&Forces, f64),
         from: usize,
     ) -> usize {
@@ -163,6 +172,12 @@ impl Cells {
             let dx = part.c(xs[i]) - part.slice(&xs[j..j + LANES]);
             let dy = part.c(ys[i]) - part.slice(&ys[j..j + LANES]);
             let mut pair = Pair::new(part, (dx, dy), part.c(rs[i]) + part.slice(&rs[j..j + LANES]));
+            if P::IS_CLOSED {
+                // Two may be near each other on two ways: the shortest counts.
+                let half = plane.half();
+                let detour = dx.abs().simd_gt(part.c(half.0)) | dy.abs().simd_gt(part.c(half.1));
+                pair.gap = detour.select(part.c(f64::NEG_INFINITY), pair.gap);
+            }
             let lanes = part.bits(pair.gap.simd_gt(minus_margin));
             self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
             found += usize::from(!lanes.is_empty());

@@ -25,13 +25,13 @@ pub(super) struct Barriers {
 impl Barriers {
     pub(super) fn new(scene: &Scene) -> Self {
         let list: Vec<Ground> =
-            scene.barriers.iter().map(|barrier| Ground::barrier(&barrier.obstacle)).collect();
+            scene.unrolled().iter().map(|barrier| Ground::barrier(&barrier.obstacle)).collect();
         let some = list.iter().enumerate().filter_map(|(k, ground)| Some((k as u32, *ground.bounds()?)));
         let (with_pieces, bounds): (Vec<u32>, Vec<Bounds>) = some.unzip();
         Self { nearby: Nearby::new(&bounds), list, with_pieces }
     }
 
-    /// One barrier.
+    /// One barrier; images come after all others.
     pub(super) fn at(&self, barrier: u32) -> &Ground {
         &self.list[barrier as usize]
     }

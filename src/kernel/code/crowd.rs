@@ -1,12 +1,12 @@
 //! Tight loops over a crowd: the shapes of expression that nearly every property has.
 
-use super::lanes::{Body, Truth, Vector, View, by_lane_of_two, lesser, narrow, widen};
+use super::lanes::{Body, Truth, Vector, View, by_lane, by_lane_of_two, lesser, narrow, widen};
 use super::machine::compare_all;
 use super::node::{Measure, Reading};
 use super::proximity::MARGIN;
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math;
-use crate::model::{Comparison, Field, Pair, Parameter};
+use crate::model::{Comparison, Field, Pair, Parameter, Period, Periods};
 use fearless_simd::{Simd, prelude::*};
 
 /// The members of a crowd, less perhaps one.
@@ -326,20 +326,24 @@ fn apart<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, field: &[Lanes], a: 
 /// A number of two agents.
 #[inline(always)]
 pub(super) fn of_two<S: Simd, const ONE: bool>(
-    view: &View<'_, S, ONE>,
+    (view, periods): (&View<'_, S, ONE>, &Periods),
     pair: Pair,
     a: Body,
     b: Body,
 ) -> Vector<S> {
     match pair {
-        Pair::TimeToCollision => time_to_collision(view, a, b),
+        Pair::TimeToCollision => time_to_collision((view, periods), a, b),
     }
 }
 
 /// Seconds until two bodies touch if both keep their velocity. Touching discs: 0. Else the first root of
 /// |p + v t| = R with p and v of one relative to the other, in the form without cancellation.
 #[inline(always)]
-fn time_to_collision<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, a: Body, b: Body) -> Vector<S> {
+fn time_to_collision<S: Simd, const ONE: bool>(
+    (view, periods): (&View<'_, S, ONE>, &Periods),
+    a: Body,
+    b: Body,
+) -> Vector<S> {
     let state = view.state;
     let (zero, never) = (view.splat(0.0), view.splat(f64::INFINITY));
     let (px, py, vx, vy) = (
@@ -348,6 +352,11 @@ fn time_to_collision<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, a: Body,
         apart(view, &state.motion.vx, a, b),
         apart(view, &state.motion.vy, a, b),
     );
+    let near = |d: Vector<S>, period: Option<Period>| match period {
+        None => d,
+        Some(period) => by_lane(d, |d| period.way(d)),
+    };
+    let (px, py) = (near(px, periods.x), near(py, periods.y));
     let (ra, rb) =
         (view.read(&state.bodies[Parameter::Radius], a), view.read(&state.bodies[Parameter::Radius], b));
     let (squared, reach) = (px * px + py * py, ra + rb);

@@ -4,6 +4,7 @@
 //! own, in the strong three-valued logic of Kleene: `false & unresolved` is false, and an `if` asks only
 //! the branch it takes. So a guard as in `count(..) > 0 & mean(..) > 1` does what it says.
 
+mod closed;
 mod functions;
 
 use super::lists::Lists;
@@ -114,7 +115,15 @@ impl<'a> Lowering<'a> {
     fn distance(&mut self, a: Who, b: Who) -> Id {
         // The distance is the same bits both ways: let both ways be one node.
         let swapped = matches!((a, b), (Who::Agent(p), Who::Agent(q)) if p > q);
-        let distance = self.graph.enter(if swapped { Node::Distance(b, a) } else { Node::Distance(a, b) });
+        let (one, other) = if swapped { (b, a) } else { (a, b) };
+        let distance = if self.is_closed() {
+            let mut read = |reading, who| self.graph.enter(Node::Of(reading, who));
+            let ends = [read(Reading::X, one), read(Reading::Y, one)];
+            let ends = [ends[0], ends[1], read(Reading::X, other), read(Reading::Y, other)];
+            self.apart(ends)
+        } else {
+            self.graph.enter(Node::Distance(one, other))
+        };
         let distance = self.if_entered(a, distance);
         self.if_entered(b, distance)
     }
@@ -148,7 +157,7 @@ impl<'a> Lowering<'a> {
             Num::Distance(a, b) => self.between(a, b),
             Num::Depth(place, region) => {
                 let (x, y) = self.point(place);
-                let id = self.graph.enter(Node::Depth(x.id, y.id, region.0));
+                let id = self.over_images((x.id, y.id), Arithmetic::Max, |x, y| Node::Depth(x, y, region.0));
                 Value { id, open: self.either([x.open, y.open]) }
             }
             Num::OfTwo(pair, a, b) => resolved(self.graph.enter(Node::OfTwo(*pair, *a, *b))),
@@ -236,6 +245,9 @@ impl<'a> Lowering<'a> {
 
     /// Whether a body about to be looped over is a distance or gap to the running agent.
     fn measure(&self, body: &Num) -> Option<(Who, Measure)> {
+        if self.is_closed() {
+            return None;
+        }
         let running = Who::Running(self.depth);
         let other = |a: Who, b: Who| match (a == running, b == running) {
             (true, false) => Some(b),
@@ -269,7 +281,10 @@ impl<'a> Lowering<'a> {
         match place {
             Place::Agent(who) => (resolved(self.of(Reading::X, *who)), resolved(self.of(Reading::Y, *who))),
             Place::Point(x, y) => (self.number(x), self.number(y)),
-            Place::Centroid(set) => (self.mean(Reading::X, set), self.mean(Reading::Y, set)),
+            Place::Centroid(set) => {
+                let periods = self.scenario.scene.periods;
+                (self.centre(Reading::X, set, periods.x), self.centre(Reading::Y, set, periods.y))
+            }
             Place::Region(_) | Place::Barrier(_) => {
                 let nowhere = resolved(self.graph.constant(f64::NAN));
                 (nowhere, nowhere)
@@ -287,17 +302,17 @@ impl<'a> Lowering<'a> {
             (thing @ (Place::Region(_) | Place::Barrier(_)), point)
             | (point, thing @ (Place::Region(_) | Place::Barrier(_))) => {
                 let (x, y) = self.point(point);
-                let node = match thing {
-                    Place::Region(region) => Node::ToRegion(x.id, y.id, region.0),
-                    Place::Barrier(barrier) => Node::ToBarrier(x.id, y.id, barrier.0),
+                let id = self.over_images((x.id, y.id), Arithmetic::Min, |x, y| match thing {
+                    Place::Region(region) => Node::ToRegion(x, y, region.0),
+                    Place::Barrier(barrier) => Node::ToBarrier(x, y, barrier.0),
                     // Not reached: `thing` is one of the two.
                     _ => Node::Constant(f64::NAN.to_bits()),
-                };
-                Value { id: self.graph.enter(node), open: self.either([x.open, y.open]) }
+                });
+                Value { id, open: self.either([x.open, y.open]) }
             }
             (a, b) => {
                 let ((ax, ay), (bx, by)) = (self.point(a), self.point(b));
-                let id = self.graph.enter(Node::Between([ax.id, ay.id, bx.id, by.id]));
+                let id = self.apart([ax.id, ay.id, bx.id, by.id]);
                 Value { id, open: self.either([ax.open, ay.open, bx.open, by.open]) }
             }
         }
@@ -447,9 +462,15 @@ impl<'a> Lowering<'a> {
     }
 
     fn contact(&mut self, who: Who) -> Id {
-        let (crowd, zero) = (self.others(who), self.graph.constant(0.0));
-        let free = self.far(who, crowd, Measure::GapFixedFirst, (Comparison::AtMost, false), zero);
-        let mut touch = self.not(free);
+        let zero = self.graph.constant(0.0);
+        let mut touch = if self.is_closed() {
+            let gap = self.nearest_gap(who);
+            self.graph.enter(Node::Compare(Comparison::AtMost, gap, zero))
+        } else {
+            let crowd = self.others(who);
+            let free = self.far(who, crowd, Measure::GapFixedFirst, (Comparison::AtMost, false), zero);
+            self.not(free)
+        };
         if let Some(walls) = self.gap_to_scene(who) {
             let at_wall = self.graph.enter(Node::Compare(Comparison::AtMost, walls, zero));
             touch = self.graph.enter(Node::Or(vec![touch, at_wall]));

@@ -25,7 +25,7 @@ mod voronoi;
 use super::near::Close;
 use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
-use crate::model::{Bool, Num, Scenario};
+use crate::model::{Bool, Num, Periods, Scenario};
 use barriers::Barriers;
 use fearless_simd::{Level, dispatch};
 use ground::Ground;
@@ -45,6 +45,7 @@ pub struct Code {
     lists: Vec<Vec<u32>>,
     regions: Vec<Ground>,
     barriers: Barriers,
+    periods: Periods,
     /// Where a Voronoi density is read.
     voronoi: Option<Arc<Voronoi>>,
     atoms: Vec<Id>,
@@ -124,6 +125,7 @@ impl Code {
             lists: lowering.lists.all,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
             barriers: Barriers::new(&scenario.scene),
+            periods: scenario.scene.periods,
             schedule,
             step: scenario.clock.step_ratio(),
             level: Level::new(),

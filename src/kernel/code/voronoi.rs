@@ -20,6 +20,8 @@ pub struct Voronoi {
     round: Convex,
     sight: Sight,
     regions: Vec<Shape>,
+    /// How far images are.
+    ways: Vec<Vec2>,
 }
 
 /// Somebody near the region.
@@ -38,6 +40,7 @@ impl Voronoi {
             round: Convex::regular(ROUND_SIDES, 1.0),
             sight: Sight::new(scene),
             regions: scene.regions.iter().map(|region| region.shape.clone()).collect(),
+            ways: scene.periods.images(),
         }
     }
 
@@ -48,7 +51,8 @@ impl Voronoi {
             let at = || Vec2::new(state.motion.x[block].0[lane], state.motion.y[block].0[lane]);
             state.present[block].has(lane).then(at)
         });
-        self.density(&self.regions[region as usize], here)
+        let images = here.flat_map(|at| self.ways.iter().map(move |way| at + way));
+        self.density(&self.regions[region as usize], images)
     }
 
     /// The density of a region, 1/m², of people at some places.
@@ -69,9 +73,13 @@ impl Voronoi {
 
     /// The areas of the cells of some people, m², in their order.
     pub fn areas(&self, people: &[Vec2]) -> Vec<f64> {
-        let mut order: Vec<usize> = (0..people.len()).collect();
-        order.sort_by(|&a, &b| people[a].x.total_cmp(&people[b].x));
-        let all: Vec<Near> = order.iter().map(|&k| Near { at: people[k], reaches: true }).collect();
+        let all = self.ways.iter().flat_map(|way| people.iter().map(move |at| at + way));
+        let all: Vec<Vec2> = all.collect();
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_by(|&a, &b| all[a].x.total_cmp(&all[b].x));
+        // The people themselves come before their images.
+        let near = |k: &usize| Near { at: all[*k], reaches: *k < people.len() };
+        let all: Vec<Near> = order.iter().map(near).collect();
         let mut areas = vec![0.0; people.len()];
         self.each(&all, |k, one, cell| {
             let barriers = self.barriers(one.at);

@@ -200,7 +200,8 @@ impl Clusters {
                 break;
             }
             let hot = &mut self.all[touch.cluster as usize].hot;
-            if !*hot && within_reach(touch.distance, moving(touch.a), moving(touch.b), h) {
+            let (one, other) = (moving(touch.a), moving(touch.b));
+            if !*hot && within_reach(&forces.periods, touch.distance, one, other, h) {
                 *hot = true;
                 cold -= 1;
             }

@@ -30,7 +30,7 @@ pub(super) fn flow<S: Simd>(simd: S, forces: &Forces, clusters: &mut Clusters, h
             *x += motion.v * drift;
         }
         if k < count {
-            pairs.find(simd, x, t);
+            pairs.find(simd, &forces.periods, x, t);
             walls.find_at_walls(simd, forces, x, t);
             exchange(pairs, walls, motions);
             drift = if k + 1 < count { t } else { 0.5 * t };

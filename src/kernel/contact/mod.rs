@@ -23,7 +23,7 @@ use super::force::Forces;
 use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::model::Parameter;
+use crate::model::{Parameter, Periods};
 use clusters::Clusters;
 use fearless_simd::Simd;
 use flow::flow;
@@ -132,7 +132,7 @@ impl Candidates {
         let here = |slot: Slot| state.present[slot.block].has(slot.lane);
         let pair = |&(i, j): &(u32, u32)| {
             let (a, b) = (state.slot(i as usize, lane), state.slot(j as usize, lane));
-            here(a) && here(b) && within_reach(radius(a) + radius(b), place(a), place(b), h)
+            here(a) && here(b) && within_reach(&forces.periods, radius(a) + radius(b), place(a), place(b), h)
         };
         let wall = |&(i, face): &(u32, u32)| {
             let a = state.slot(i as usize, lane);
@@ -145,8 +145,14 @@ impl Candidates {
 /// Whether two bodies with these places and velocities, which touch at a distance of `touch`, can do so
 /// within `h` seconds.
 #[inline(always)]
-fn within_reach(touch: f64, (x, v): (Vec2, Vec2), (other_x, other_v): (Vec2, Vec2), h: f64) -> bool {
-    let (d, v) = (x - other_x, v - other_v);
+fn within_reach(
+    periods: &Periods,
+    touch: f64,
+    (x, v): (Vec2, Vec2),
+    (other_x, other_v): (Vec2, Vec2),
+    h: f64,
+) -> bool {
+    let (d, v) = (periods.way(x - other_x), v - other_v);
     let reach = touch + length(v) * h;
     d.dot(&d) < reach * reach
 }

@@ -8,6 +8,7 @@ use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::force::contact::{compression, friction};
 use crate::kernel::force::{Forces, walls};
 use crate::kernel::vector::{first_part, parts};
+use crate::model::Periods;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -106,8 +107,11 @@ impl Touches {
 
     /// Finds the pairs of bodies that overlap, and what they do in a sub-step of `t` seconds.
     #[inline(always)]
-    pub(super) fn find<S: Simd>(&mut self, simd: S, x: &[Vec2], t: f64) {
+    pub(super) fn find<S: Simd>(&mut self, simd: S, periods: &Periods, x: &[Vec2], t: f64) {
         self.part(x);
+        if !periods.are_none() {
+            self.shorten(periods);
+        }
         for eight in &mut self.blocks {
             for part in parts(simd) {
                 let (dx, dy) = (part.load(&eight.nx), part.load(&eight.ny));
@@ -118,6 +122,17 @@ impl Touches {
             }
         }
         self.prepare(simd, t);
+    }
+
+    /// The same ways to the nearest images.
+    #[cold]
+    fn shorten(&mut self, periods: &Periods) {
+        for eight in &mut self.blocks {
+            for lane in 0..LANES {
+                let way = periods.way(Vec2::new(eight.nx.0[lane], eight.ny.0[lane]));
+                (eight.nx.0[lane], eight.ny.0[lane]) = (way.x, way.y);
+            }
+        }
     }
 
     /// The ways between the bodies of pairs.

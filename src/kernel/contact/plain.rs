@@ -10,7 +10,7 @@ use crate::kernel::force::walls;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::kernel::vector::first_part;
-use crate::model::{Barrier, Behaviours, Obstacle, Parameter, Processes, Scenario, Scene};
+use crate::model::{Barrier, Behaviours, Obstacle, Parameter, Periods, Processes, Scenario, Scene};
 use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
 
@@ -126,7 +126,8 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
         let moving = |i: u32| (x[i as usize], v[i as usize]);
         let mut hot = [false; PEOPLE];
         for &(i, j) in pairs {
-            hot[i as usize] |= within_reach(radius(i) + radius(j), moving(i), moving(j), H);
+            hot[i as usize] |=
+                within_reach(&Periods::default(), radius(i) + radius(j), moving(i), moving(j), H);
         }
         for &(i, face) in walls {
             hot[i as usize] |= within_reach_of_face(&program.forces, face, radius(i), moving(i), H);

@@ -5,7 +5,7 @@
 use super::pair::Sum;
 use crate::base::geometry::Vec2;
 use crate::kernel::state::State;
-use crate::model::Scenario;
+use crate::model::{Periods, Scenario};
 
 /// Members that attract each other.
 #[derive(Clone, Debug)]
@@ -29,19 +29,18 @@ impl Cohesion {
     }
 
     /// Adds the attraction of a group.
-    pub(super) fn add(&self, state: &State, sums: &mut [Sum]) {
+    pub(super) fn add(&self, periods: &Periods, state: &State, sums: &mut [Sum]) {
         for lane in state.occupied.iter() {
-            let place = |member: u32| {
+            // On a closed plane of each the image that is nearest to the first.
+            let mut first = None;
+            let mut place = |member: u32| {
                 let slot = state.slot(member as usize, lane);
                 let here = state.present[slot.block].has(slot.lane);
                 here.then(|| {
-                    (
-                        slot,
-                        Vec2::new(
-                            state.motion.x[slot.block].0[slot.lane],
-                            state.motion.y[slot.block].0[slot.lane],
-                        ),
-                    )
+                    let (x, y) = (&state.motion.x[slot.block], &state.motion.y[slot.block]);
+                    let at = Vec2::new(x.0[slot.lane], y.0[slot.lane]);
+                    let first = *first.get_or_insert(at);
+                    (slot, if periods.are_none() { at } else { first + periods.way(at - first) })
                 })
             };
             let (mut n, mut sum) = (0.0, Vec2::zeros());

@@ -14,9 +14,10 @@ mod social;
 pub(super) mod walls;
 
 use super::pace::fastest;
+use super::plane::Closed;
 use super::state::State;
 use crate::base::math::at_least;
-use crate::model::{Agent, Body, Law, Parameter, Scenario};
+use crate::model::{Agent, Body, Law, Parameter, Periods, Scenario};
 pub(super) use ahead::Ahead;
 use cohesion::Cohesion;
 pub(super) use pair::Both;
@@ -34,6 +35,9 @@ pub struct Forces {
     /// Walls and obstacles.
     pub(super) surfaces: Surfaces,
     groups: Vec<Cohesion>,
+    /// Along which axes the plane closes on itself, and the same for vectors.
+    pub(super) periods: Periods,
+    pub(super) closed: Option<Closed>,
     pub(super) particles: Particles,
     /// B (and B of the second term), if it is the same constant in all bodies and no two are of several
     /// persons: then one exponential serves both bodies of a pair.
@@ -51,28 +55,30 @@ pub struct Forces {
 /// Whether the foresight of all bodies is the same constant.
 type SameForesight = bool;
 
-/// Runs a block with the terms between two bodies that a scenario has, as `$term`. It is compiled once for each combination
-/// of them, so that a term that a scenario lacks costs nothing.
+/// Runs a block with the terms between two bodies that a scenario has, as `$term`, and its plane, as `$plane`. It is compiled
+/// once for each combination of them, so that a term that a scenario lacks costs nothing.
 macro_rules! with_pair_terms {
-    ($forces:ident, $term:ident, $body:expr) => {
+    ($forces:ident, $term:ident, $plane:pat, $body:expr) => {
         if let (Some(true), Some((b, _)), false) = ($forces.ahead, $forces.shared, $forces.second) {
             let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
             let $term = $crate::kernel::force::Ahead::<_, true>($term);
-            $body
-        } else if $forces.ahead.is_some() {
-            // One term for all other scenes in which somebody looks ahead.
+            with_pair_terms!(@on $forces, $plane, $body)
+        } else if $forces.ahead.is_some() || $forces.closed.is_some() {
+            // One term for all other scenes in which somebody looks ahead, or the plane is closed.
             let first = $crate::kernel::force::Social::<false, false>::with_own_ranges();
             let second = $crate::kernel::force::Social::<true, false>::with_own_ranges();
             let term = $crate::kernel::force::Both(first, second);
             let repulsion = $forces.repulsion.as_slice();
             let term = $crate::kernel::force::Bounded { term, repulsion };
             let $term = $crate::kernel::force::Ahead::<_, false>(term);
-            $body
+            with_pair_terms!(@on $forces, $plane, $body)
         } else if let Some((b, b2)) = $forces.shared {
+            let $plane = $crate::kernel::plane::Open;
             let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
             let second = $crate::kernel::force::Social::<true, true>::with_range(b2);
             with_pair_terms!(@if $forces.second, $term = $crate::kernel::force::Both($term, second), $body)
         } else {
+            let $plane = $crate::kernel::plane::Open;
             let $term = $crate::kernel::force::Social::<false, false>::with_own_ranges();
             let second = $crate::kernel::force::Social::<true, false>::with_own_ranges();
             let repulsion = $forces.particles.repulsion.as_slice();
@@ -84,6 +90,14 @@ macro_rules! with_pair_terms {
                     $body
                 )
             )
+        }
+    };
+    (@on $forces:ident, $plane:pat, $body:expr) => {
+        if let Some($plane) = $forces.closed {
+            $body
+        } else {
+            let $plane = $crate::kernel::plane::Open;
+            $body
         }
     };
     (@if $present:expr, $term:ident = $more:expr, $body:expr) => {
@@ -132,7 +146,9 @@ impl Forces {
         repulsion.resize(scenario.agents.len(), f64::NAN);
         let shared = first_range.zip(second_range).filter(|_| particles.repulsion.is_empty());
         Self {
-            surfaces: Surfaces::new(&scenario.scene.barriers),
+            surfaces: Surfaces::new(&scenario.scene.unrolled()),
+            periods: scenario.scene.periods,
+            closed: Closed::with(&scenario.scene.periods),
             groups: Cohesion::all(scenario),
             particles,
             shared,
@@ -146,7 +162,7 @@ impl Forces {
     /// Adds the attraction within groups.
     pub(super) fn add_cohesion(&self, state: &State, sums: &mut [Sum]) {
         for group in &self.groups {
-            group.add(state, sums);
+            group.add(&self.periods, state, sums);
         }
     }
 }

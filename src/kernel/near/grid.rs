@@ -77,8 +77,8 @@ pub(in crate::kernel) fn most(lanes: &Lanes) -> f64 {
 /// How the plane is cut. Agents outside count to the cells at the rim, which have no end.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::kernel) struct Grid {
-    pub(super) x: f64,
-    pub(super) y: f64,
+    pub(in crate::kernel) x: f64,
+    pub(in crate::kernel) y: f64,
     height: f64,
     per_width: f64,
     per_height: f64,
@@ -151,13 +151,13 @@ impl Grid {
 
     /// Column of one abscissa.
     #[inline(always)]
-    pub(super) fn column_of(&self, x: f64) -> usize {
+    pub(in crate::kernel) fn column_of(&self, x: f64) -> usize {
         whole_of((x - self.x) * self.per_width, self.columns)
     }
 
     /// Strip of one ordinate.
     #[inline(always)]
-    pub(super) fn strip_of(&self, y: f64) -> usize {
+    pub(in crate::kernel) fn strip_of(&self, y: f64) -> usize {
         whole_of((y - self.y) * self.per_height, self.strips)
     }
 

@@ -1,6 +1,7 @@
 //! Bodies placed so far, found by neighbourhood.
 
 use crate::base::geometry::Vec2;
+use crate::model::Periods;
 use std::collections::BTreeMap;
 
 /// Up to so many bodies, all are in one cell.
@@ -13,15 +14,19 @@ pub(super) struct Crowd {
     pub(super) positions: Vec<Vec2>,
     pub(super) radii: Vec<f64>,
     cell: f64,
+    /// How far images are, and the periods.
+    ways: Vec<Vec2>,
+    periods: Periods,
     cells: BTreeMap<(i64, i64), Vec<u32>>,
 }
 
 impl Crowd {
     /// So many bodies, none placed.
-    pub(super) fn new(radii: Vec<f64>) -> Self {
+    pub(super) fn new(radii: Vec<f64>, periods: Periods) -> Self {
         let largest = radii.iter().fold(0.0, |a: f64, &b| if b > a { b } else { a });
         let cell = if radii.len() <= FEW || largest == 0.0 { f64::INFINITY } else { 2.0 * largest };
-        Self { positions: vec![Vec2::zeros(); radii.len()], radii, cell, cells: BTreeMap::new() }
+        let positions = vec![Vec2::zeros(); radii.len()];
+        Self { positions, radii, cell, ways: periods.images(), periods, cells: BTreeMap::new() }
     }
 
     fn cell_of(&self, p: Vec2) -> (i64, i64) {
@@ -30,6 +35,7 @@ impl Crowd {
 
     /// Places a body.
     pub(super) fn put(&mut self, body: usize, p: Vec2) {
+        let p = self.periods.wrap(p);
         self.positions[body] = p;
         let cell = if self.cell.is_finite() { self.cell_of(p) } else { (0, 0) };
         self.cells.entry(cell).or_default().push(body as u32);
@@ -44,8 +50,13 @@ impl Crowd {
             }
             self.put(body, p);
         } else {
-            self.positions[body] = p;
+            self.positions[body] = self.periods.wrap(p);
         }
+    }
+
+    /// The way to a place from a body.
+    pub(super) fn way_from(&self, body: usize, p: Vec2) -> Vec2 {
+        self.periods.way(p - self.positions[body])
     }
 
     /// Calls `f` with every placed body that may overlap a disc of `body`'s radius at `p`, except itself.
@@ -62,10 +73,12 @@ impl Crowd {
             visit((0, 0));
             return;
         }
-        let (x, y) = self.cell_of(p);
-        for dx in -1..=1 {
-            for dy in -1..=1 {
-                visit((x.saturating_add(dx), y.saturating_add(dy)));
+        for way in &self.ways {
+            let (x, y) = self.cell_of(p + way);
+            for dx in -1..=1 {
+                for dy in -1..=1 {
+                    visit((x.saturating_add(dx), y.saturating_add(dy)));
+                }
             }
         }
     }
@@ -74,7 +87,7 @@ impl Crowd {
     pub(super) fn gap(&self, body: usize, p: Vec2) -> f64 {
         let mut least = f64::INFINITY;
         self.around(body, p, |other| {
-            let gap = (p - self.positions[other]).norm() - self.radii[body] - self.radii[other];
+            let gap = self.way_from(other, p).norm() - self.radii[body] - self.radii[other];
             if gap < least {
                 least = gap;
             }

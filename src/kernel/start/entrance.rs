@@ -26,6 +26,7 @@ pub(super) fn enter(
     let slot = state.slot(agent, lane);
     state.bodies.put(slot, body, Parameter::ALL.into_iter());
     let velocity = program.scenario.agents[agent].start.velocity;
+    let at = program.forces.periods.wrap(at);
     let put = |field: &mut [Lanes], value| field[slot.block].0[slot.lane] = value;
     put(&mut state.motion.x, at.x);
     put(&mut state.motion.y, at.y);

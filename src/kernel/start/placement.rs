@@ -24,14 +24,18 @@ const ONE_POINT: f64 = 1e-6;
 struct Barriers {
     list: Vec<(u32, Bounds)>,
     nearby: Nearby,
+    /// On a closed plane all barriers with their images.
+    unrolled: Vec<Barrier>,
 }
 
 impl Barriers {
     fn new(scene: &Scene) -> Self {
         let with_pieces = |(k, barrier): (usize, &Barrier)| Some((k as u32, bounds(&barrier.obstacle)?));
-        let list: Vec<(u32, Bounds)> = scene.barriers.iter().enumerate().filter_map(with_pieces).collect();
+        let all = scene.unrolled();
+        let list: Vec<(u32, Bounds)> = all.iter().enumerate().filter_map(with_pieces).collect();
         let bounds: Vec<Bounds> = list.iter().map(|(_, bounds)| *bounds).collect();
-        Self { list, nearby: Nearby::new(&bounds) }
+        let unrolled = if scene.periods.are_none() { Vec::new() } else { all.into_owned() };
+        Self { list, nearby: Nearby::new(&bounds), unrolled }
     }
 }
 
@@ -106,10 +110,16 @@ impl<'a> Ground<'a> {
 
     /// The barriers whose bounds are within `reach` of a point.
     pub(super) fn near(self, p: Vec2, reach: f64) -> impl Iterator<Item = &'a Obstacle> {
-        self.barriers_near(p, reach).map(move |barrier| &self.scene.barriers[barrier as usize].obstacle)
+        self.barriers_near(p, reach).map(move |barrier| self.obstacle(barrier))
     }
 
-    /// The same by their numbers.
+    fn obstacle(self, barrier: u32) -> &'a Obstacle {
+        let unrolled = &self.barriers.unrolled;
+        let all = if unrolled.is_empty() { &self.scene.barriers } else { unrolled };
+        &all[barrier as usize].obstacle
+    }
+
+    /// The same by their numbers; those of images come after all others.
     fn barriers_near(self, p: Vec2, reach: f64) -> impl Iterator<Item = u32> {
         let close = move |b: &Bounds| {
             p.x > b.low.x - reach && p.x < b.high.x + reach && p.y > b.low.y - reach && p.y < b.high.y + reach
@@ -124,7 +134,7 @@ impl<'a> Ground<'a> {
     /// The barrier nearest to a point among those within reach, and its distance.
     fn nearest(self, p: Vec2, reach: f64) -> Option<(BarrierId, f64)> {
         self.barriers_near(p, reach)
-            .map(|k| (BarrierId(k), self.scene.barriers[k as usize].obstacle.distance(p)))
+            .map(|k| (BarrierId(k % self.scene.barriers.len() as u32), self.obstacle(k).distance(p)))
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
@@ -150,7 +160,7 @@ pub(super) fn place(
     radii: Vec<f64>,
 ) -> Result<Placed, Fault> {
     let ground = Ground::of(&scenario.scene, starts);
-    let mut crowd = Crowd::new(radii);
+    let mut crowd = Crowd::new(radii, scenario.scene.periods);
     let mut rooms = vec![Room::Fixed; scenario.agents.len()];
     let mut counts = Loaded::default();
     let mut done = vec![false; scenario.agents.len()];
@@ -222,8 +232,7 @@ fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut L
         crowd.around(body, p, |other| near.push(other as u32));
         near.sort_unstable();
         for other in near.iter().map(|&other| other as usize).filter(|&other| other > body) {
-            let (distance, sum) =
-                ((p - crowd.positions[other]).norm(), crowd.radii[body] + crowd.radii[other]);
+            let (distance, sum) = (crowd.way_from(other, p).norm(), crowd.radii[body] + crowd.radii[other]);
             if distance <= ONE_POINT {
                 return Err(Fault::Together { agents: (AgentId(body as u32), AgentId(other as u32)) });
             }

@@ -30,7 +30,7 @@ impl Room<'_> {
     /// Whether a place is farther from another body than it may be, by more than anyone sees.
     pub(super) fn is_left(self, crowd: &Crowd, p: Vec2) -> bool {
         match self {
-            Self::Near { anchor, within } => (p - crowd.positions[anchor]).norm() > within + CLEARANCE,
+            Self::Near { anchor, within } => crowd.way_from(anchor, p).norm() > within + CLEARANCE,
             Self::Fixed | Self::Within(_) => false,
         }
     }
@@ -40,7 +40,7 @@ impl Room<'_> {
             Self::Fixed => p,
             Self::Within(shape) => shape.nearest(p),
             Self::Near { anchor, within } => {
-                let from = p - crowd.positions[anchor];
+                let from = crowd.way_from(anchor, p);
                 let distance = from.norm();
                 if distance > within { crowd.positions[anchor] + from * (within / distance) } else { p }
             }
@@ -99,7 +99,7 @@ fn push(crowd: &Crowd, rooms: &[Room<'_>], ground: Ground<'_>, body: usize, swee
     let (at, radius) = (crowd.positions[body], crowd.radii[body]);
     let mut push = Vec2::zeros();
     crowd.around(body, at, |other| {
-        let apart = at - crowd.positions[other];
+        let apart = crowd.way_from(other, at);
         let distance = apart.norm();
         let overlap = radius + crowd.radii[other] - distance;
         if overlap <= 0.0 {

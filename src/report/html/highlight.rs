@@ -5,7 +5,7 @@ use crate::report::escape::escape;
 use std::fmt::Write as _;
 
 /// Words with a meaning of their own in both languages.
-const KEYWORDS: [&str; 78] = [
+const KEYWORDS: [&str; 79] = [
     "E",
     "F",
     "G",
@@ -58,6 +58,7 @@ const KEYWORDS: [&str; 78] = [
     "param",
     "particle",
     "paths",
+    "periodic",
     "point",
     "polygon",
     "preset",

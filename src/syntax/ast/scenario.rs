@@ -129,6 +129,15 @@ pub enum SceneItem {
         /// Where.
         span: Span,
     },
+    /// `periodic x in 0 m .. 20 m`
+    Periodic {
+        /// `x` or `y`, or a name that compilation will refuse.
+        axis: Ident,
+        /// Its ends.
+        ends: [Expr; 2],
+        /// Where.
+        span: Span,
+    },
     /// `import "file.geojson" where source == "map.png"`
     Import {
         /// File.

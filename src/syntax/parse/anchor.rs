@@ -102,6 +102,7 @@ pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
             "wall" => name == "(",
             "obstacle" => matches!(name, "circle" | "rect" | "polygon") && mark == "(",
             "import" => name.starts_with('"'),
+            "periodic" => name.starts_with(lexeme::starts_name) && mark == "in",
             _ => false,
         },
         Rule::field | Rule::bad_field => sets(word, name) || word == "limit" && sets(name, mark),

@@ -52,6 +52,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_param => "param",
         Rule::kw_particle => "particle",
         Rule::kw_paths => "paths",
+        Rule::kw_periodic => "periodic",
         Rule::kw_point => "point",
         Rule::kw_polygon => "polygon",
         Rule::kw_preset => "preset",
@@ -174,7 +175,9 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::property_item | Rule::property_item_end => {
             &["property", "let", "const", "family", "check", "estimate", "compare", "rank"]
         }
-        Rule::scene_item | Rule::scene_item_end => &["wall", "obstacle", "region", "point", "line", "import"],
+        Rule::scene_item | Rule::scene_item_end => {
+            &["wall", "obstacle", "region", "point", "line", "import", "periodic"]
+        }
         Rule::process_item | Rule::process_item_end => &["var", "let", "label", "when", "choose"],
         Rule::behaviour_item | Rule::behaviour_item_end => &["state", "on", "let"],
         Rule::state_item | Rule::state_item_end | Rule::transition => &["after", "when"],

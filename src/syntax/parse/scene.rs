@@ -31,6 +31,15 @@ impl Builder<'_> {
             };
             return Some(SceneItem::Import { path, walkable, filter, fields: self.body(parts), span });
         }
+        if rule == Rule::periodic {
+            let axis = self.ident(&parts.part(Rule::name)?);
+            let low = self.expr(parts.part(Rule::arith)?)?;
+            return Some(SceneItem::Periodic {
+                axis,
+                ends: [low, self.expr(parts.part(Rule::arith)?)?],
+                span,
+            });
+        }
         let name = parts.part(Rule::name).map(|name| self.declared(&name));
         match rule {
             Rule::wall => {

@@ -14,8 +14,13 @@ impl Lowering<'_> {
             Collective::MeanVelocity(Axis::Y) => self.mean(Reading::Field(Field::VelocityY), set),
             Collective::Spread => {
                 let (x, y) = self.point(&Place::Centroid(set.clone()));
-                let crowd = self.crowd(set);
-                Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
+                let id = if self.is_closed() {
+                    self.closed_spread(set, (x.id, y.id))
+                } else {
+                    let crowd = self.crowd(set);
+                    self.graph.enter(Node::Spread(crowd, x.id, y.id))
+                };
+                Value { id, open: x.open }
             }
         }
     }
@@ -49,8 +54,12 @@ impl Lowering<'_> {
 
     /// A body that has left has no gap: infinite.
     fn clearance(&mut self, who: Who) -> Id {
-        let crowd = self.others(who);
-        let mut gap = self.graph.enter(Node::Nearest(who, crowd, Measure::GapFixedFirst));
+        let mut gap = if self.is_closed() {
+            self.nearest_gap(who)
+        } else {
+            let crowd = self.others(who);
+            self.graph.enter(Node::Nearest(who, crowd, Measure::GapFixedFirst))
+        };
         if let Some(walls) = self.gap_to_scene(who) {
             gap = self.graph.enter(Node::Combine(Arithmetic::Min, gap, walls));
         }

@@ -252,7 +252,9 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
                 self.code.barriers.at(barrier).signed_distance(self.number(x), self.number(y))
             }
             Node::ToScene(x, y) => self.code.barriers.distance(self.number(x), self.number(y)),
-            Node::OfTwo(pair, a, b) => crowd::of_two(&view, pair, self.body(a), self.body(b)),
+            Node::OfTwo(pair, a, b) => {
+                crowd::of_two((&view, &self.code.periods), pair, self.body(a), self.body(b))
+            }
             Node::Mean(reading, crowd) => crowd::mean_reading(&view, self.members(crowd), reading),
             Node::Spread(crowd, x, y) => {
                 crowd::spread(&view, self.members(crowd), self.number(x), self.number(y))
