@@ -80,6 +80,11 @@ impl Cells {
         self.finished.iter().position(|finished| !finished).unwrap_or(self.finished.len())
     }
 
+    /// The cells of these trials.
+    pub(super) fn whole(&self) -> &[Cell] {
+        &self.list[..self.ready() * self.width]
+    }
+
     /// A trial was cut: the cells that were decided before, and marks for the others.
     fn put_cut(&mut self, place: usize, row: &[Cell]) {
         if self.marked {
