@@ -140,7 +140,7 @@ pub(super) struct Questions {
     /// list has its own number). May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(super) only: Vec<String>,
-    /// Largest number of shards of a round; with `--launch local` the number of threads by default, else 100.
+    /// Largest number of shards of a round, 100 by default; with `--launch local` the largest number of threads.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) shards: Option<u32>,
     /// Show no progress and no forecast on standard error.
@@ -161,7 +161,7 @@ pub(super) struct Check {
     /// Only forecast the number of trials and the time of each query; runs the first few trials.
     #[arg(long, conflicts_with_all = ["timeout", "report", "launch"])]
     pub(super) forecast: bool,
-    /// Run the trials in shards: `local` (processes), `hq` (`HyperQueue`), `slurm`, `k8s` (prints a job for Kubernetes), or a
+    /// Run the trials in shards: `local` (threads), `hq` (`HyperQueue`), `slurm`, `k8s` (prints a job for Kubernetes), or a
     /// command in which `{shard}`, `{count}`, `{last}`, `{plan}` and `{parts}` are replaced. Never changes a result.
     #[arg(long, value_name = "ENGINE|COMMAND")]
     pub(super) launch: Option<String>,

@@ -89,7 +89,11 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
             "warning: more than {most} threads are not faster on this machine, so {most} are used; results do not change\n"
         ));
     }
-    let threads = arguments.threads.unwrap_or_else(cores).min(most);
+    let is_local = launch == Some("local");
+    let shards = arguments.shards.map(|shards| shards as usize);
+    // Shards of this process are its threads.
+    let fewest = shards.filter(|_| is_local).unwrap_or(most);
+    let threads = arguments.threads.unwrap_or_else(cores).min(most).min(fewest);
     let executor = match Threads::new(Some(threads)) {
         Ok(executor) => executor,
         Err(error) => return reporter.fault(&Fault::Threads(error.to_string())),
@@ -118,7 +122,6 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         let run = run_study(study, &call(), &executor, &budget, &progress);
         run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
-        let default = if launch == Some("local") { threads } else { 100 };
         let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
         let mut rounds = Rounds {
             study,
@@ -126,12 +129,15 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
             origin,
             budget: &budget,
             threads: &executor,
-            shards: arguments.shards.map_or(default, |shards| shards as usize),
+            shards: shards.unwrap_or(100),
             progress: &progress,
             warn: &mut warn,
         };
         let launcher = launch.map(|engine| Launcher { engine, line: line(arguments), jobs: threads });
-        folder(way).and_then(|mut folder| rounds.run(&mut folder, launcher.as_ref()))
+        folder(way).and_then(|mut folder| match &launcher {
+            Some(_) if is_local => rounds.record(&mut folder).map(Some),
+            launcher => rounds.run(&mut folder, launcher.as_ref()),
+        })
     };
     match result {
         Ok(Some(run)) => {

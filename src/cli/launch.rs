@@ -16,8 +16,7 @@ use std::time::Duration;
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The lines of the engines that are known by name.
-const ENGINES: [(&str, &str); 3] = [
-    ("local", "seq 0 {last} | xargs -n 1 -P {jobs} sh {shard}"),
+const ENGINES: [(&str, &str); 2] = [
     ("hq", "hq submit --wait --array 0-{last} --stdout none --stderr none -- sh {shard}"),
     ("slurm", "sbatch --wait --array=0-{last} --output={parts}/shards.log --open-mode=append {shard}"),
 ];

@@ -1,5 +1,5 @@
 //! Rounds over a folder of parts: the ordinary session reads them, what it lacks is the plan of the next round, and a launcher
-//! runs that, until nothing is lacking.
+//! runs that, until nothing is lacking. Or the session runs what is lacking itself, and records it.
 
 use super::launch::Launcher;
 use super::parts::{self, PartsFolder};
@@ -7,11 +7,13 @@ use super::progress::Progress;
 use super::terminal::print;
 use crate::compile::Study;
 use crate::engine::outcome::{CallResult, QueryResult, Stop};
-use crate::engine::shards::{Attempts, Origin, Plan, Stored, Unit};
+use crate::engine::shards::{Attempts, Origin, Part, Plan, Recorder, Stored, Unit};
 use crate::engine::{Budget, Call, Threads, run as run_study};
 use crate::library;
 use crate::report::number::brief;
 use crate::syntax::diagnostic::Diagnostic;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A call whose trials run elsewhere.
 pub(super) struct Rounds<'a> {
@@ -83,6 +85,33 @@ impl Rounds<'_> {
                 attempts.fail(&missing);
             }
         }
+    }
+
+    /// Runs what is not there on the threads of this process, and writes parts of it.
+    pub(super) fn record(&mut self, folder: &mut PartsFolder) -> Result<CallResult, Vec<Diagnostic>> {
+        let one = |error| vec![error];
+        let before = folder.plan(&self.origin).map_err(one)?;
+        (self.warn)(&folder.scan(&self.origin, before.as_ref()).map_err(one)?);
+        let (round, made) = (folder.next_round(before.as_ref()), AtomicUsize::new(0));
+        let unwritten = Mutex::new(None);
+        let keep = |part: &Part| {
+            let place = (round, made.fetch_add(1, Ordering::Relaxed));
+            let written = parts::write(&folder.path, place, part);
+            if let (Err(error), Ok(mut unwritten)) = (written, unwritten.lock()) {
+                *unwritten = Some(error);
+                self.budget.interrupt();
+            }
+        };
+        let (heads, reread) = (folder.heads(), |part| folder.reread(part));
+        let stored = Stored::new(&heads, &reread, self.threads);
+        let stored = stored.map_err(|(parts, unit)| vec![folder.contradiction(parts, &unit)])?;
+        let recorder = Recorder::new(stored, self.threads, self.origin.clone(), &keep);
+        let run = run_study(self.study, &self.call, &recorder, self.budget, self.progress);
+        recorder.flush(self.budget.elapsed());
+        if let Ok(Some(error)) = unwritten.into_inner() {
+            return Err(one(error));
+        }
+        run.map_err(|fault| library::refusals(&fault))
     }
 
     /// The results of what is there: why they are not more.

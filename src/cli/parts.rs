@@ -23,7 +23,7 @@ pub(super) struct PartsFolder {
 }
 
 /// The name of a part in its folder.
-pub(super) fn name(round: u64, index: usize) -> String {
+fn name(round: u64, index: usize) -> String {
     format!("{round:04}-{index:06}.part")
 }
 
@@ -171,6 +171,14 @@ impl PartsFolder {
         let parts = self.seen.iter().filter_map(round);
         parts.chain(plan.map(|plan| plan.round)).max().unwrap_or(0) + 1
     }
+}
+
+/// Writes a part into a folder.
+pub(super) fn write(folder: &Path, (round, index): (u64, usize), part: &Part) -> Result<(), Diagnostic> {
+    let bytes = part.bytes().map_err(|error| super::complaint::output(error.to_string()))?;
+    let file = folder.join(name(round, index));
+    output::write(&file, |out| out.write_all(&bytes))
+        .map_err(|error| super::complaint::unwritten(&file, &error))
 }
 
 /// A warning about shards that brought nothing back, if any.

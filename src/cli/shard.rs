@@ -1,9 +1,9 @@
 //! `smc shard`: runs a shard of a plan and writes its part.
 
 use super::arguments::ShardCommand;
-use super::parts::{name, read_plan, same_origin};
+use super::parts::{self, read_plan, same_origin};
 use super::terminal::Colors;
-use super::{complaint, inputs, output};
+use super::{complaint, inputs};
 use crate::engine::shards::{Origin, Unit, run as run_shard};
 use crate::engine::{Budget, Fault, Threads};
 use crate::gait;
@@ -48,10 +48,7 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
         let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
         let part = run_shard(&study, (&plan, arguments.index), &drivers, &threads, &budget);
         let Some(part) = part.map_err(refusals)? else { return Ok(Exit::Interrupted) };
-        let bytes = part.bytes().map_err(|error| one(complaint::output(error.to_string())))?;
-        let file = arguments.output.join(name(plan.round, arguments.index));
-        output::write(&file, |out| out.write_all(&bytes))
-            .map_err(|error| one(complaint::unwritten(&file, &error)))?;
+        parts::write(&arguments.output, (plan.round, arguments.index), &part).map_err(one)?;
         Ok(Exit::Success)
     };
     work().unwrap_or_else(|errors| {

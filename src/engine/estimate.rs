@@ -9,7 +9,7 @@ use super::cell::Item;
 use super::entry::EstimateEntry;
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, PilotStatistics};
+use super::forecast::{self, FIRST, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::{self, Pilot};
 use super::prepared::PreparedWorld;
@@ -61,7 +61,7 @@ pub(super) struct FaultyTrial {
 impl<'q> EstimateSampling<'q> {
     /// An estimate of some entries about one prepared world.
     pub(super) fn new(prepared: &'q PreparedWorld, entries: Vec<EstimateEntry<'q>>, seed: u64) -> Self {
-        let job = Job::new(prepared, columns(&entries), seed);
+        let job = Job::new(prepared, columns(entries.iter()), seed);
         Self { job, entries, ahead: None, next: 0, spent: 0.0 }
     }
 
@@ -240,7 +240,7 @@ impl<'q> EstimateSampling<'q> {
                     ahead.cells
                 }
                 None => {
-                    self.job.narrow(columns(&self.entries));
+                    self.job.narrow(columns(self.open()));
                     let width = executor.width(&self.job) as u64;
                     items.clear();
                     let size = round(&self.entries, self.next, width, share);
@@ -264,10 +264,10 @@ impl<'q> EstimateSampling<'q> {
                 && self.entries.iter().any(EstimateEntry::is_open)
             {
                 // What nobody reads any more may be what is lacking.
-                self.job.narrow(columns(&self.entries));
-                if executor.request(&self.job, None, self.next..self.foreseen(budget).min(end)) {
+                if self.request(executor, self.foreseen(budget).min(end), budget) {
                     share.lack();
                 }
+                self.job.narrow(columns(self.open()));
             }
             let slow = if share.has_deadline() { self.slow(&cells) } else { Vec::new() };
             self.job.reuse(cells);
@@ -283,14 +283,37 @@ impl<'q> EstimateSampling<'q> {
         Ok(Advance::Stopped)
     }
 
+    fn open(&self) -> impl Iterator<Item = &EstimateEntry<'q>> {
+        self.entries.iter().filter(|entry| entry.is_open())
+    }
+
+    /// Requests trials up to one, each column up to where its readers surely stop; whether the next trial is lacking.
+    fn request(&mut self, executor: &dyn Executor, last: u64, budget: &Budget) -> bool {
+        let (mut from, mut lacks) = (self.next, false);
+        while from < last {
+            let sure = |entry: &EstimateEntry<'_>| {
+                let planned = entry.procedure.limit().filter(|_| entry.procedure.is_planned());
+                planned.unwrap_or(last).min(budget.max_trials)
+            };
+            let reading = || self.open().filter(|entry| sure(entry) > from);
+            let to = reading().map(sure).min().unwrap_or(last).min(last);
+            self.job.narrow(columns(reading()));
+            lacks |= executor.request(&self.job, None, from..to) && from == self.next;
+            from = to;
+        }
+        lacks
+    }
+
     /// Up to which trial somebody will most likely read.
     fn foreseen(&self, budget: &Budget) -> u64 {
         let of = |entry: &EstimateEntry<'_>| {
             let likely = forecast::entry(&entry.query.ask, &entry.procedure, &entry.statistics);
             forecast::ahead(self.next, likely).min(entry.procedure.limit().unwrap_or(u64::MAX))
         };
-        let open = self.entries.iter().filter(|entry| entry.is_open());
-        open.map(of).max().unwrap_or(0).min(budget.max_trials)
+        // Where little is known of one, others do not carry its column far.
+        let is_known = self.next >= FIRST || self.open().all(|entry| entry.procedure.is_planned());
+        let most = if is_known { budget.max_trials } else { FIRST.min(budget.max_trials) };
+        self.open().map(of).max().unwrap_or(0).min(most)
     }
 
     /// The columns that hold the others up: in which no trial of a round was decided in its time, or trials take much longer.
@@ -339,9 +362,9 @@ impl<'q> EstimateSampling<'q> {
     }
 }
 
-/// Columns that somebody still reads.
-fn columns(entries: &[EstimateEntry<'_>]) -> Vec<usize> {
-    let mut columns: Vec<usize> = entries.iter().filter(|i| i.is_open()).map(|i| i.column).collect();
+/// Columns that some entries read.
+fn columns<'e, 'q: 'e>(entries: impl Iterator<Item = &'e EstimateEntry<'q>>) -> Vec<usize> {
+    let mut columns: Vec<usize> = entries.map(|entry| entry.column).collect();
     columns.sort_unstable();
     columns.dedup();
     columns

@@ -80,6 +80,11 @@ impl Cells {
         self.finished.iter().position(|finished| !finished).unwrap_or(self.finished.len())
     }
 
+    /// The cells of these trials.
+    pub(super) fn whole(&self) -> &[Cell] {
+        &self.list[..self.ready() * self.width]
+    }
+
     /// A trial was cut: the cells that were decided before, and marks for the others.
     fn put_cut(&mut self, place: usize, row: &[Cell]) {
         if self.marked {
@@ -138,6 +143,9 @@ pub trait Executor: Sync {
     fn record(&self, _run: &SplitRun) -> Option<Option<RunRecord>> {
         None
     }
+
+    /// A run of splitting was made.
+    fn made(&self, _run: &SplitRun, _record: &RunRecord) {}
 }
 
 /// A prepared world, the columns that are observed, and the workers that are warm.
@@ -245,15 +253,17 @@ impl Executor for Threads {
     }
 
     fn run_all(&self, parts: &[(&Job<'_>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
-        let parts: Vec<(&Job<'_>, &[Item])> =
-            parts.iter().map(|(job, items)| (*job, items.as_slice())).collect();
-        self.run_parts(&parts, budget)
+        self.run_parts(&slices(parts), budget)
     }
 }
 
 impl Threads {
     /// Runs rounds of several jobs. A thread that finds nothing left of one goes on to the next.
-    fn run_parts(&self, parts: &[(&Job<'_>, &[Item])], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+    pub(super) fn run_parts(
+        &self,
+        parts: &[(&Job<'_>, &[Item])],
+        budget: &Budget,
+    ) -> Result<Vec<Cells>, Invalid> {
         let mut rounds: Vec<Cells> =
             parts.iter().map(|(job, items)| job.cells(items.len(), budget.has_deadline())).collect();
         let threads = self.pool.current_num_threads();
@@ -296,6 +306,11 @@ impl Threads {
         }
         Ok(rounds)
     }
+}
+
+/// Rounds whose items belong to somebody else.
+pub(super) fn slices<'r, 's>(parts: &'r [(&'r Job<'s>, Vec<Item>)]) -> Vec<(&'r Job<'s>, &'r [Item])> {
+    parts.iter().map(|(job, items)| (*job, items.as_slice())).collect()
 }
 
 /// The round of a job on its way.

@@ -139,7 +139,7 @@ pub(super) fn entry(ask: &Ask, procedure: &Procedure, statistics: &PilotStatisti
 }
 
 /// First trials of a query that are requested from elsewhere.
-const FIRST: u64 = 256;
+pub(super) const FIRST: u64 = 256;
 
 /// Up to which trial outcomes are requested from elsewhere, where so many are read: as many as will surely be needed, or as the
 /// fewest that are likely to be, and at least a fifth more, so that of what comes less than a quarter is in vain.

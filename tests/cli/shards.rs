@@ -27,6 +27,9 @@ const PLANNED: &str = "estimate P(F<=3 s contact(user)) by clopper_pearson(trial
 /// Works for hours.
 const ENDLESS: &str = "check P(F<=3 s contact(user)) >= 0.17 by sprt(indifference = 0.00001)\n";
 
+/// A launcher that runs one shard after the other.
+const LINE: &str = "for i in $(seq 0 {last}); do sh {shard} $i; done";
+
 const CALL: [&str; 3] = ["check", "a.scn", "a.bltl"];
 
 fn place(properties: &str) -> Place {
@@ -94,8 +97,7 @@ fn shards_report_what_one_thread_reports() {
     let place = place(PROPERTIES);
     for more in [&["--set", "density=0.2"][..], &["--set", "density=0.1..0.3 by 0.1", "--only", "0"]] {
         let alone = place.call(&words(&[more, &["-j", "1"]].concat()));
-        let line = "for i in $(seq 0 {last}); do sh {shard} $i; done";
-        for launch in [&["--launch", "local", "-j", "2"][..], &["--launch", line, "--shards", "7"]] {
+        for launch in [&["--launch", "local", "-j", "2"][..], &["--launch", LINE, "--shards", "7"]] {
             let led = place.call(&words(&[more, launch].concat()));
             assert_eq!(led.err, "", "{launch:?}");
             assert_eq!(led.code, alone.code, "{launch:?}");
@@ -162,7 +164,7 @@ fn plans_shards_and_merges_by_hand_come_to_the_same() {
 #[test]
 fn wrong_parts_give_no_verdict() {
     let place = place(PLANNED);
-    let launch = ["--launch", "local", "--parts", "parts", "--shards", "4", "-j", "2"];
+    let launch = ["--launch", LINE, "--parts", "parts", "--shards", "4"];
     let whole = place.call(&words(&launch));
     let all = parts(&place, "parts");
     assert_eq!(all.len(), 4);
@@ -230,7 +232,7 @@ fn parts_and_plans_of_other_calls_are_refused() {
     let place = place(PLANNED);
     place.write("b.scn", SMALL.replace("crowd[round(density", "crowd[1 + round(density").as_bytes());
     place.write("b.bltl", b"estimate P(F<=2 s contact(user)) by clopper_pearson(trials = 2000)\n");
-    let launch = ["-q", "--max-trials", "2000", "--launch", "local", "--parts", "parts"];
+    let launch = ["-q", "--max-trials", "2000", "--launch", LINE, "--parts", "parts", "--shards", "4"];
     assert_eq!(place.call(&[&CALL[..], &launch].concat()).code, Some(0));
     let file = parts(&place, "parts").remove(0);
     // Another seed, model, property, setting.
@@ -349,6 +351,13 @@ fn a_full_disk_leaves_no_part() {
     let left: Vec<_> =
         std::fs::read_dir(place.path("parts")).unwrap().map(|file| file.unwrap().file_name()).collect();
     assert_eq!(left, ["plan.json"]);
+    let line = format!(
+        "trap '' XFSZ; ulimit -f 0; exec {} check a.scn a.bltl -q --launch local --parts full",
+        env!("CARGO_BIN_EXE_smc")
+    );
+    let output = Command::new("sh").args(["-c", &line]).current_dir(place.path(".")).output().unwrap();
+    let said = Said::of(&output);
+    assert!(said.code == Some(2) && said.err.contains("E0706"), "{:?} {}", said.code, said.err);
 }
 
 #[test]
@@ -367,6 +376,35 @@ fn a_call_that_is_killed_goes_on_where_it_was() {
     let led = place.call(&words(&["--launch", "local", "-j", "2", "--parts", "parts"]));
     assert_eq!(report(&led), report(&alone));
     assert_eq!(simulated(&place, "parts"), 2000, "what was there is not run again");
+}
+
+#[test]
+fn threads_that_are_killed_leave_parts_that_are_not_run_again() {
+    let place = place(ENDLESS);
+    let local = ["--launch", "local", "--parts", "parts", "--shards", "2"];
+    let call = |most: &str, more: &[&str]| {
+        place.command(&[&CALL[..], &["-q", "--format", "json", "--max-trials", most], more].concat())
+    };
+    let mut command = call("1000000000", &local);
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_for("a part is there", || place.path("parts").is_dir() && !parts(&place, "parts").is_empty());
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let before = simulated(&place, "parts");
+    let most = (before + 1000).to_string();
+    let alone = Said::of(&call(&most, &["-j", "1"]).output().unwrap());
+    let led = Said::of(&call(&most, &local).output().unwrap());
+    assert_eq!((led.code, report(&led)), (alone.code, report(&alone)), "{}", led.err);
+    assert_eq!(simulated(&place, "parts"), before + 1000);
+    // Another seed finds parts that are not its own; a part that is changed is named and run again.
+    let said = Said::of(&call(&most, &[&local[..], &["--seed", "1"]].concat()).output().unwrap());
+    assert!(said.code == Some(2) && said.err.contains("E0724"), "{}", said.err);
+    let mut bytes = std::fs::read(&parts(&place, "parts")[0]).unwrap();
+    let last = bytes.len() - 9;
+    bytes[last] ^= 1;
+    std::fs::write(&parts(&place, "parts")[0], bytes).unwrap();
+    let again = Said::of(&call(&most, &local).output().unwrap());
+    assert!(again.err.contains("W0722") && report(&again) == report(&alone), "{}", again.err);
 }
 
 #[test]

@@ -8,6 +8,7 @@
 
 mod part;
 mod plan;
+mod recorder;
 mod shard;
 mod stored;
 mod table;
@@ -15,6 +16,7 @@ mod unit;
 
 pub use part::{Body, Damaged, Head, Part};
 pub use plan::{Attempts, Plan};
+pub use recorder::Recorder;
 pub use shard::run;
 pub use stored::Stored;
 pub use table::Table;

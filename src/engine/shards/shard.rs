@@ -72,7 +72,7 @@ fn outcomes(
         if cells.ready() < items.len() {
             return Ok(None);
         }
-        table.push(&cells.rows().flatten().flatten().copied().collect::<Vec<_>>());
+        table.push(cells.whole());
         job.reuse(cells);
         from = to;
     }

@@ -37,6 +37,7 @@ pub struct Table {
     bytes: Vec<u8>,
 }
 
+#[inline]
 fn numbers(cell: &Cell) -> [u64; KINDS] {
     let (kind, value) = match cell.reading {
         Reading::Truth(held) => (u64::from(held), 0),
@@ -67,34 +68,45 @@ impl Table {
 
     /// Appends the cells of some trials, trial by trial. All calls but the last one bring whole blocks.
     pub(super) fn push(&mut self, cells: &[Cell]) {
+        if cells.is_empty() {
+            return;
+        }
+        let mut all = vec![[0; BLOCK]; KINDS];
         for block in cells.chunks(BLOCK * self.columns) {
-            self.trials += block.len() / self.columns;
+            let trials = block.len() / self.columns;
+            self.trials += trials;
             for column in 0..self.columns {
-                let all: Vec<_> = block.iter().skip(column).step_by(self.columns).map(numbers).collect();
-                for kind in 0..KINDS {
-                    self.row(all.iter().map(|numbers| numbers[kind]));
+                for (k, trial) in block.chunks_exact(self.columns).enumerate() {
+                    [all[0][k], all[1][k], all[2][k], all[3][k]] = numbers(&trial[column]);
+                }
+                for row in &all {
+                    self.row(&row[..trials]);
                 }
             }
         }
     }
 
-    fn row(&mut self, numbers: impl Iterator<Item = u64> + Clone) {
-        let least = numbers.clone().min().unwrap_or(0);
-        let width = u64::BITS - (numbers.clone().max().unwrap_or(0) - least).leading_zeros();
+    /// Appends numbers, word by word.
+    fn row(&mut self, numbers: &[u64]) {
+        let first = numbers.first().copied().unwrap_or_default();
+        if numbers.iter().fold(0, |all, number| all | (number ^ first)) == 0 {
+            return self.rows.push(Row { least: first, width: 0, at: 0 });
+        }
+        let (least, most) = numbers.iter().fold((u64::MAX, 0), |(a, b), &n| (a.min(n), b.max(n)));
+        let width = u64::BITS - (most - least).leading_zeros();
         self.rows.push(Row { least, width: width as u8, at: 0 });
-        let (mut held, mut filled) = (0u128, 0);
-        for number in numbers {
-            held |= u128::from(number - least) << filled;
+        let (mut word, mut filled) = (0, 0);
+        for number in numbers.iter().map(|number| number - least) {
+            word |= number << filled;
             filled += width;
-            while filled >= 8 {
-                self.bytes.push(held as u8);
-                held >>= 8;
-                filled -= 8;
+            if filled >= u64::BITS {
+                self.bytes.extend_from_slice(&word.to_le_bytes());
+                filled -= u64::BITS;
+                // What did not fit begins the next word.
+                word = number.checked_shr(width - filled).unwrap_or(0);
             }
         }
-        if filled > 0 {
-            self.bytes.push(held as u8);
-        }
+        self.bytes.extend_from_slice(&word.to_le_bytes()[..filled.div_ceil(8) as usize]);
     }
 
     /// Makes a table that was read ready for looks at its cells, if it has so many trials and columns.

@@ -288,23 +288,25 @@ fn advance(
     budget: &Budget,
     watch: &dyn Watch,
 ) -> Result<Option<Vec<RunRecord>>, Fault> {
-    if executor.is_stored() {
-        let stored: Vec<_> = runs.iter().map(|run| executor.record(run)).collect();
-        let Some(stored) = stored.into_iter().collect::<Option<Vec<_>>>() else {
-            budget.lack();
-            found.stop = budget.stopped_by();
-            return Ok(None);
-        };
-        // Where the model is wrong in a run, or the budget ends runs on their way, they are made here.
-        if let Some(records) = stored.into_iter().collect::<Option<Vec<RunRecord>>>()
-            && found.admits(records.iter().map(|one| one.paths).sum(), budget)
-        {
-            let count = |one: &RunRecord| found.count((one.paths, one.steps, one.lost), runs[0].lost_reaches);
-            records.iter().for_each(count);
-            return Ok(Some(records));
-        }
+    // All of them are requested before one that is not there ends the question.
+    let stored: Vec<_> = runs.iter().map(|run| executor.record(run)).collect();
+    let stored: Option<Vec<_>> = stored.into_iter().collect();
+    if stored.is_none() && executor.is_stored() {
+        budget.lack();
+        found.stop = budget.stopped_by();
+        return Ok(None);
     }
-    make(batches, runs, (&query.text, seed), found, executor, budget, watch)
+    // Where the model is wrong in a run, or the budget ends runs on their way, they are made here.
+    if let Some(records) = stored.and_then(|all| all.into_iter().collect::<Option<Vec<RunRecord>>>())
+        && found.admits(records.iter().map(|one| one.paths).sum(), budget)
+    {
+        let count = |one: &RunRecord| found.count((one.paths, one.steps, one.lost), runs[0].lost_reaches);
+        records.iter().for_each(count);
+        return Ok(Some(records));
+    }
+    let made = make(batches, runs, (&query.text, seed), found, executor, budget, watch)?;
+    runs.iter().zip(made.iter().flatten()).for_each(|(run, record)| executor.made(run, record));
+    Ok(made)
 }
 
 /// Makes runs side by side; `None` if not all of them came to an end.
