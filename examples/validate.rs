@@ -87,7 +87,11 @@ fn section(
         let reports: Vec<_> = presets.iter().map(of).collect();
         for (preset, report) in presets.iter().zip(&reports) {
             let report = report.as_ref().ok();
-            figures.note((name, preset), setting.map(|(_, value)| value), report.map_or(&[], Report::results));
+            figures.note(
+                (name, preset),
+                setting.map(|(_, value)| value),
+                report.map_or(&[], Report::results),
+            );
         }
         let queries =
             properties.lines().filter(|line| line.starts_with("check ") || line.starts_with("estimate "));

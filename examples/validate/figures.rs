@@ -25,7 +25,7 @@ struct Point {
 
 /// What the pictures show.
 #[derive(Clone, Debug, Default)]
-pub struct Figures {
+pub(crate) struct Figures {
     diagram: Vec<Point>,
     door: Vec<Point>,
 }
@@ -38,14 +38,20 @@ fn weidmann(density: f64) -> f64 {
 /// Estimate and interval of the estimates among results.
 fn estimates(results: &[QueryResult]) -> Vec<[f64; 3]> {
     let of = |result: &QueryResult| {
-        Some([result.low, result.estimate?, result.high]).filter(|_| result.asked.text.starts_with("estimate"))
+        Some([result.low, result.estimate?, result.high])
+            .filter(|_| result.asked.text.starts_with("estimate"))
     };
     results.iter().filter_map(of).collect()
 }
 
 impl Figures {
     /// Keeps what the results of a preset say, at a value of the parameter of a test.
-    pub fn note(&mut self, (test, preset): (&str, &str), value: Option<&str>, results: &[QueryResult]) {
+    pub(crate) fn note(
+        &mut self,
+        (test, preset): (&str, &str),
+        value: Option<&str>,
+        results: &[QueryResult],
+    ) {
         let Some(preset) = PRESETS.iter().position(|one| one.name == preset) else { return };
         let width = value.and_then(|value| value.split(' ').next()?.parse().ok());
         match (test, &estimates(results)[..], width) {
@@ -56,7 +62,7 @@ impl Figures {
     }
 
     /// The picture below a test as Markdown; its file is written.
-    pub fn below(&self, test: &str) -> std::io::Result<String> {
+    pub(crate) fn below(&self, test: &str) -> std::io::Result<String> {
         let (says, svg) = match test {
             DIAGRAM => ("Speed over density", self.speeds()),
             DOOR => ("Flow over width", self.flows()),

@@ -126,7 +126,20 @@ impl<'s> CompareSampling<'s> {
         let jobs = [0, 1].map(|side| Job::new(sides.worlds[side], vec![sides.columns[side]], seed));
         let (tallies, statistics, ahead, spent) = Default::default();
         let evidence = shows_evidence.then(Vec::new);
-        Ok(Self { query, jobs, procedure, range, within, delta, ahead, tallies, means, statistics, evidence, spent })
+        Ok(Self {
+            query,
+            jobs,
+            procedure,
+            range,
+            within,
+            delta,
+            ahead,
+            tallies,
+            means,
+            statistics,
+            evidence,
+            spent,
+        })
     }
 
     /// The query.

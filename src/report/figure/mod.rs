@@ -8,8 +8,8 @@ mod flaw;
 mod ranking;
 mod sweep;
 
-pub use flaw::Flaw;
 use super::svg::frame::part_of_page;
+pub use flaw::Flaw;
 use serde_json::Value;
 
 /// What is drawn.

@@ -151,8 +151,11 @@ impl Frame {
 
     /// Pale dots, of which those at one place look like one.
     pub fn cloud(&mut self, points: impl IntoIterator<Item = (f64, f64)>, k: usize) {
-        let mut places: Vec<String> =
-            points.into_iter().map(|(x, y)| self.at(x, y)).map(|(x, y)| format!("M{x:.1},{y:.1}h0")).collect();
+        let mut places: Vec<String> = points
+            .into_iter()
+            .map(|(x, y)| self.at(x, y))
+            .map(|(x, y)| format!("M{x:.1},{y:.1}h0"))
+            .collect();
         places.sort_unstable();
         places.dedup();
         let (colour, _) = LINES[k % LINES.len()];

@@ -127,10 +127,7 @@ mod tests {
         let close = Scale::probabilities([0.93, 0.95]);
         assert!(close.low > 0.9 && close.high < 0.96);
         let log = Scale::log([1.0, 1000.0]);
-        assert_eq!(
-            log.ticks.iter().map(|tick| plain(*tick)).collect::<Vec<_>>(),
-            ["1", "10", "100", "1000"]
-        );
+        assert_eq!(log.ticks.iter().map(|tick| plain(*tick)).collect::<Vec<_>>(), ["1", "10", "100", "1000"]);
         assert!((log.share(10.0) - 1.0 / 3.0).abs() < 1e-12);
         assert_eq!([0.9, 1.0, 4.9, 5.0, 19.0].map(round_step), [1.0, 1.0, 5.0, 5.0, 20.0]);
     }
