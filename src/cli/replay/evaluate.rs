@@ -96,7 +96,9 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     match arguments.format {
         EvaluateFormat::Text => Ok(to_text(&evaluated)),
         EvaluateFormat::Json => Ok(to_json(&evaluated)),
-        EvaluateFormat::Svg => Ok(to_svg(&evaluated)),
+        EvaluateFormat::Svg => {
+            to_svg(&evaluated).map_err(|flaw| vec![complaint::argument(flaw.message, flaw.hint)])
+        }
         EvaluateFormat::Csv => {
             let mut out = Vec::new();
             write_csv(&mut out, &evaluated).map_err(|error| vec![complaint::output(error.to_string())])?;

@@ -8,7 +8,12 @@ const SCHEMA: u32 = 1;
 
 /// Files, options, and each property of each kind.
 pub fn to_json(report: &Evaluated) -> String {
-    let all = json!({
+    format!("{:#}\n", value(report))
+}
+
+/// The same as a value.
+pub(super) fn value(report: &Evaluated) -> Value {
+    json!({
         "schema": SCHEMA,
         "model": report.model,
         "properties": report.properties,
@@ -23,8 +28,7 @@ pub fn to_json(report: &Evaluated) -> String {
         "instants": report.instants,
         "persons": report.persons,
         "kinds": report.kinds.iter().map(kind).collect::<Vec<_>>(),
-    });
-    format!("{all:#}\n")
+    })
 }
 
 fn kind(kind: &EvaluatedKind) -> Value {

@@ -2,19 +2,26 @@
 
 mod csv;
 mod json;
-mod svg;
 mod text;
 
 pub use csv::write_csv;
 pub use json::to_json;
-pub use svg::to_svg;
 pub use text::to_text;
 
+use super::figure::{self, Figure, Flaw};
 use crate::data::tracks::Velocity;
 use crate::stats::{Estimate, Quality};
 
 /// The kind with which others are compared: people who keep their velocity.
 pub const CONSTANT: &str = "constant";
+
+/// The reliability diagrams, which `smc plot --figure calibration` draws, too.
+///
+/// # Errors
+/// Nothing was evaluated.
+pub fn to_svg(report: &Evaluated) -> Result<String, Flaw> {
+    figure::draw(Figure::Calibration, &json::value(report), None)
+}
 
 /// Predictions for a recording, and how they were made.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,5 @@
 //! Reliability of predictions that `smc evaluate --format json` has written: the share that happened over the predicted
-//! probability (Murphy and Winkler 1977), a frame a property, a line a kind.
+//! probability, and below it how many predictions were made (Murphy and Winkler 1977); two frames a property, a line a kind.
 
 use super::answer::number;
 use super::flaw::Flaw;
@@ -35,9 +35,13 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
         let axes = [format!("predicted probability of `{}`", axes[0]), axes[1].clone()];
         let mut frame = Frame::new([&axes[0], &axes[1]], Scale::shares(), Scale::shares());
         frame.line([(0.0, 0.0), (1.0, 1.0)], 4);
+        let mut numbers = Vec::new();
         for (k, kind) in kinds.iter().enumerate() {
             let of_name = properties(kind).into_iter().find(|one| one["name"].as_str() == Some(name));
-            let bins = of_name.and_then(|one| one["bins"].as_array().cloned()).unwrap_or_default();
+            let list =
+                |key: &str| of_name.as_ref().and_then(|one| one[key].as_array().cloned()).unwrap_or_default();
+            let bins = list("bins");
+            numbers.push(list("histogram").iter().map(number).collect::<Vec<f64>>());
             let points: Vec<(f64, f64)> =
                 bins.iter().map(|bin| (number(&bin["mean"]), number(&bin["share"]))).collect();
             for (x, y) in &points {
@@ -46,8 +50,22 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
             frame.line(points, k);
             frame.name(kind["name"].as_str().unwrap_or_default(), k);
         }
-        frames.push(frame);
+        frames.extend([frame, predictions(&numbers)]);
     }
     let recording = file["recording"].as_str().unwrap_or_default();
     Ok(picture(&format!("Reliability on {recording}"), frames))
+}
+
+/// How many predictions lie in each tenth: an outline for each kind.
+fn predictions(numbers: &[Vec<f64>]) -> Frame {
+    let y = Scale::linear(numbers.iter().flatten().copied().chain([0.0]));
+    let mut frame = Frame::new(["predicted probability", "predictions"], Scale::shares(), y).low();
+    for (k, numbers) in numbers.iter().enumerate() {
+        let tenths = numbers.iter().zip(0_u32..);
+        frame.line(
+            tenths.flat_map(|(n, tenth)| [(f64::from(tenth) / 10.0, *n), (f64::from(tenth + 1) / 10.0, *n)]),
+            k,
+        );
+    }
+    frame
 }

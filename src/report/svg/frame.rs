@@ -19,7 +19,7 @@ const LINE: f64 = 16.0;
 /// Most letters of a name.
 const LETTERS: usize = 48;
 /// Colours of lines, with their widths and dashes, in order.
-pub const LINES: [(&str, &str); 6] = [
+const LINES: [(&str, &str); 6] = [
     ("#c2410c", "stroke-width=\"2\""),
     ("#1d4e89", "stroke-width=\"2\" stroke-dasharray=\"7 3\""),
     ("#5b8c5a", "stroke-width=\"2\" stroke-dasharray=\"2 3\""),
