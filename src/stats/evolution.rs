@@ -252,6 +252,7 @@ mod tests {
     /// the crate within a third.
     #[test]
     fn a_search_takes_as_many_evaluations_as_another_implementation() {
+        type Loss = fn(&[f64]) -> f64;
         let median = |mut all: Vec<usize>| {
             all.sort_unstable();
             all[all.len() / 2] as f64
@@ -261,9 +262,8 @@ mod tests {
             let (a, b) = (x[1] - x[0] * x[0], 1.0 - x[0]);
             100.0 * a * a + b * b
         };
-        let both: [(&dyn Fn(&[f64]) -> f64, &[f64]); 2] =
-            [(&ellipsoid, &[1.0, 1.0, 1.0]), (&rosenbrock, &[-1.0, 1.0])];
-        for (loss, start) in both {
+        let losses: [Loss; 2] = [ellipsoid, rosenbrock];
+        for (loss, start) in losses.into_iter().zip([&[1.0, 1.0, 1.0][..], &[-1.0, 1.0]]) {
             let theirs = |seed: u64| {
                 let options = cmaes::CMAESOptions::new(start.to_vec(), 0.5)
                     .weights(cmaes::Weights::Positive)

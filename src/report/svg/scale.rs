@@ -33,10 +33,8 @@ impl Scale {
     pub fn probabilities(numbers: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = ends(numbers);
         let is_whole = high - low >= APART && high <= 1.0 && low >= -1.0;
-        Self::linear(match is_whole {
-            true => [if low < 0.0 { -1.0 } else { 0.0 }, 1.0],
-            false => [low, high],
-        })
+        let whole = [if low < 0.0 { -1.0 } else { 0.0 }, 1.0];
+        Self::linear(if is_whole { whole } else { [low, high] })
     }
 
     /// An axis on which equal factors are equally long, around positive numbers.
