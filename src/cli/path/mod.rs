@@ -19,6 +19,7 @@ use crate::kernel::{Program, Run, State};
 use crate::library;
 use crate::model::{AgentId, Move, Parameter, Route, Scenario, SpeedRule};
 use crate::report::ExitCode as Exit;
+use crate::report::number::counted;
 use crate::report::paths::{self, PlannedPath};
 use crate::route::Ways;
 use crate::route::planner::{Speeds, Wish};
@@ -174,10 +175,10 @@ fn told(paths: &[PlannedPath]) -> String {
     let mut out = String::new();
     for PlannedPath { agent, name, course, .. } in paths {
         let (length, fastest, walked) = (course.path.length(), course.optimum.duration(), course.duration());
+        let pieces = counted(course.path.pieces().len() as u64, "piece");
         let _ = writeln!(
             out,
-            "{agent:<14} {name:<16} {length:.2} m, {walked:.2} s (at least {fastest:.2} s), {} pieces",
-            course.path.pieces().len()
+            "{agent:<14} {name:<16} {length:.2} m, {walked:.2} s (at least {fastest:.2} s), {pieces}"
         );
     }
     out
