@@ -17,6 +17,7 @@ mod figures;
 
 use figures::Figures;
 use smc::compile::presets::PRESETS;
+use smc::engine::outcome::Verdict;
 use smc::{Draft, Options, Report};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -40,16 +41,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     let mut page = fs::read_to_string(folder.join("head.md"))?;
     page.push_str(&recorded::section(folders.first().map(Path::new), most.min(TRIALS))?);
-    let mut figures = Figures::default();
+    let (mut figures, mut tests) = (Figures::default(), String::new());
+    let presets: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    writeln!(
+        page,
+        "\n## Verdicts\n\n| test | {} |\n| --- {}|",
+        presets.join(" | "),
+        "| --- ".repeat(presets.len())
+    )?;
     for name in &names {
         let scenario = fs::read_to_string(folder.join(format!("{name}.scn")))?;
         let properties = fs::read_to_string(folder.join(format!("{name}.bltl")))?;
         eprintln!("{name}");
         let started = std::time::Instant::now();
-        page.push_str(&section((name, &scenario, &properties), most, &mut figures)?);
-        page.push_str(&figures.below(name)?);
+        let (text, tallies) = section((name, &scenario, &properties), most, &mut figures)?;
+        let tallies: Vec<String> = tallies.iter().map(Tally::words).collect();
+        writeln!(page, "| [{name}](#{name}) | {} |", tallies.join(" | "))?;
+        tests.push_str(&text);
+        tests.push_str(&figures.below(name)?);
         eprintln!("  {:.0} s", started.elapsed().as_secs_f64());
     }
+    page.push_str(&tests);
     page.push_str(&fs::read_to_string(folder.join("missing.md"))?);
     fs::write("docs/validation.md", page)?;
     Ok(())
@@ -60,12 +72,41 @@ fn comment<'a>(text: &'a str, word: &str) -> Option<&'a str> {
     text.lines().find_map(|line| line.strip_prefix("// ")?.strip_prefix(word))
 }
 
-/// A test: its source, its criterion, and a table of queries by presets.
+/// How many checks of a test a preset meets.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    checks: usize,
+    met: usize,
+    violated: usize,
+}
+
+impl Tally {
+    fn add(&mut self, verdict: Option<Verdict>) {
+        self.checks += 1;
+        self.met += usize::from(verdict == Some(Verdict::Satisfied));
+        self.violated += usize::from(verdict == Some(Verdict::Violated));
+    }
+
+    fn words(&self) -> String {
+        let open = self.checks - self.met - self.violated;
+        let parts = [(self.met, "satisfied"), (self.violated, "violated"), (open, "undecided")];
+        let parts: Vec<String> = parts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(
+                |(count, word)| if self.checks == 1 { (*word).to_owned() } else { format!("{count} {word}") },
+            )
+            .collect();
+        if parts.is_empty() { "numbers only".into() } else { parts.join(", ") }
+    }
+}
+
+/// A test: its source, its criterion, and a table of queries by presets; and what each preset meets.
 fn section(
     (name, scenario, properties): (&str, &str, &str),
     most: u64,
     figures: &mut Figures,
-) -> Result<String, Box<dyn std::error::Error>> {
+) -> Result<(String, Vec<Tally>), Box<dyn std::error::Error>> {
     let mut out = format!("\n## {name}\n\n");
     writeln!(out, "{} {}\n", comment(scenario, "").unwrap_or(""), comment(properties, "").unwrap_or(""))?;
     let presets: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
@@ -77,6 +118,7 @@ fn section(
     };
     let trials = comment(properties, "Trials: ").map_or(Ok(TRIALS), str::parse)?;
     let options = Options::default().max_trials(trials.min(most));
+    let mut tallies = vec![Tally::default(); presets.len()];
     for setting in settings {
         let of = |preset: &&str| {
             let text = scenario.replace(NAMED, &format!("preset {preset}"));
@@ -99,7 +141,10 @@ fn section(
             let given =
                 setting.map_or(String::new(), |(parameter, value)| format!("{parameter} = {value}: "));
             write!(out, "| {given}`{query}` |")?;
-            for report in &reports {
+            for (tally, report) in tallies.iter_mut().zip(&reports) {
+                if query.starts_with("check") {
+                    tally.add(report.as_ref().ok().and_then(|report| report.results().get(k)?.verdict));
+                }
                 let cell = report.as_ref().map_or_else(
                     |refused| {
                         let code = refused.iter().next().map(|first| first.code.name());
@@ -112,7 +157,7 @@ fn section(
             out.push('\n');
         }
     }
-    Ok(out)
+    Ok((out, tallies))
 }
 
 /// Verdict, estimate and interval of a query.
