@@ -88,6 +88,24 @@ fn who_is_pushed_out_of_sight_is_given_another_way() {
 }
 
 #[test]
+fn a_crowd_uses_the_width_of_a_corridor_at_its_corner() {
+    let model = Model::parse(
+        "horizon = 80 s\nstep = 0.02 s
+        scene {
+          wall (-16, 0) -- (10, 0) -- (10, 15)
+          wall (-16, 5) -- (5, 5) -- (5, 15)
+          region goal: rect (5, 13) .. (10, 15)
+        }
+        kind person: sfm preset smc1 { noise = 0.05 m/s }
+        agents crowd[150]: person { at = uniform in rect (-15, 0.3) .. (0, 4.7)  route = goal then leave }",
+    )
+    .unwrap_or_else(|errors| panic!("{errors}"));
+    // A single file around the inner corner needs 60 s or more.
+    let out = one(&model, "estimate P(F<=54 s (count(a in crowd) == 0)) by fixed(trials = 8)");
+    assert_eq!(out.consumed.counts.successes, 8);
+}
+
+#[test]
 fn both_layouts_find_the_same_way_and_lanes_do_not_meet() {
     let text = |others: u32| {
         format!(

@@ -26,6 +26,9 @@ const AGAIN: f64 = 0.5;
 /// Who is slower than this stands, m/s.
 const STANDS: f64 = 0.1;
 
+/// An agent that is slower than this share of its driving speed is slowed down by others.
+const SLOWED: f64 = 0.6;
+
 /// So many looks in a row, 0.5 s apart, make 2 s.
 const LOOKS: u32 = 4;
 
@@ -302,12 +305,14 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
     let first = person.point();
     let course = &state.plans.courses[block];
     let start = Vec2::new(course.start_x.0[lane], course.start_y.0[lane]);
-    let (d, along) = (points[first] - at, points[first] - start);
+    let goal = Vec2::new(course.goal_x.0[lane], course.goal_y.0[lane]);
+    let (d, along) = (goal - at, goal - start);
     let square = d.x * d.x + d.y * d.y;
     let passes = d.x * along.x + d.y * along.y <= 0.0 && square <= PASSING * PASSING;
     let mut blocker = state.plans.held(slot).blocker;
     let mut point = first;
-    if square <= radius * radius * 4.0 || passes || is_due {
+    // An agent that keeps a lane turns at its end.
+    if square <= radius * radius * 4.0 || passes || is_due && goal == points[first] {
         while point < points.len() {
             let next = points.get(point + 1).copied().unwrap_or(leg);
             let found = drive.blocker((at, next), radius, blocker);
@@ -326,11 +331,41 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
             state.plans.courses[block].fresh |= Mask::lane(lane);
         } else if is_due && !sees(drive, state, slot, points[first]) {
             state.plans.ask(slot, Occasion::Left);
+        } else if is_due {
+            keep_lane(drive, state, slot, (start, *next, points.get(first + 1).copied().unwrap_or(leg)));
         }
     } else {
         state.plans.end(slot);
         state.plans.watch(slot);
         Person::new(drive, state, slot).renew();
+    }
+}
+
+/// An agent that is slowed down on its way to a corner keeps its lane from then on, and turns where the lane meets the line that
+/// halves the corner. So a crowd uses the width of a corridor, where the shortest way is a single file.
+fn keep_lane(drive: &Drive, state: &mut State, slot: Slot, (start, corner, next): (Vec2, Vec2, Vec2)) {
+    let Slot { block, lane } = slot;
+    let person = Person::new(drive, state, slot);
+    let (at, radius) = (person.at(), person.radius());
+    let (vx, vy) = (state.motion.vx[block].0[lane], state.motion.vy[block].0[lane]);
+    let least = SLOWED * state.bodies[Parameter::Speed][block].0[lane];
+    let ahead = (corner - start).normalize();
+    let outward = (ahead + (corner - next).normalize()).normalize();
+    // Both lines meet where at + t ahead = corner + aside outward.
+    let aside = ahead.perp(&(at - corner)) / ahead.perp(&outward);
+    let place = corner + aside * outward;
+    let course = &state.plans.courses[block];
+    let has_lane = (course.goal_x.0[lane], course.goal_y.0[lane]) != (corner.x, corner.y);
+    let keeps = (has_lane || vx * vx + vy * vy < least * least)
+        && aside > 0.0
+        && aside.is_finite()
+        && drive.sees(at, place, radius)
+        && drive.sees(place, next, radius);
+    let place = if keeps { place } else { corner };
+    let course = &mut state.plans.courses[block];
+    if (course.goal_x.0[lane], course.goal_y.0[lane]) != (place.x, place.y) {
+        course.set_goal(lane, place, start);
+        course.fresh |= Mask::lane(lane);
     }
 }
 
