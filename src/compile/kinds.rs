@@ -266,7 +266,7 @@ impl Elaborator<'_> {
             let hint = if kind.base == model::Kind::Planned {
                 "write for example `limit speed = 1.5 m/s` in the kind"
             } else {
-                "set the values, or start from a preset: `kind adult: sfm preset helbing2000 { … }`"
+                "set the values, or start from a preset: `kind adult: sfm preset smc1 { … }`"
             };
             return self.report(Diagnostic::error(Code::E0209, name.span, title).hint(hint));
         }

@@ -40,7 +40,7 @@ pub(in crate::cli) struct InferCommand {
     /// How traces are projected to the time of an observation.
     #[arg(long, value_enum, default_value_t = MotionModel::Constant)]
     pub(super) motion: MotionModel,
-    /// With the social force: a kind of the scene, or a preset; `helbing2000` by default.
+    /// With the social force: a kind of the scene, or a preset; `smc1` by default.
     #[arg(long, value_name = "NAME")]
     pub(super) kind: Option<String>,
     /// With the social force: a scenario (`.scn`) whose walls and obstacles people avoid.

@@ -15,7 +15,7 @@ use crate::syntax::source::Source;
 use std::path::PathBuf;
 
 /// The preset of people without `--kind`.
-const PRESET: &str = "helbing2000";
+const PRESET: &str = "smc1";
 
 /// A model of motion, and where it comes from.
 pub(super) struct ChosenMotion {
