@@ -11,7 +11,7 @@
 //! let model = Model::parse("
 //!     horizon = 5 s
 //!     step = 0.02 s
-//!     kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
+//!     kind adult: sfm preset smc1 { noise = 0.1 m/s }
 //!     agent user: adult { at = (0, 0)  route = (20, 0) }
 //! ")?;
 //! let queries = "check P(F<=5 s (travelled(user) > 4 m)) >= 0.9";
