@@ -1,7 +1,9 @@
 //! How far into a trial a formula looks: the order of its parts, and the last state that each of them is
 //! asked about.
 
-use super::formula::{AtomId, Node, NodeId, Relation, SignalId, Term, TermId, Tree, Window};
+use super::formula::{
+    AtomId, Node, NodeId, Relation, SignalId, Term, TermId, Tree, Window, in_time, last_tick,
+};
 use super::invalid::Invalid;
 use crate::base::tick::{Clock, Tick};
 use std::collections::BTreeSet;
@@ -85,19 +87,12 @@ fn timed(tree: &Tree, part: Part, clock: Clock) -> Option<(NodeId, Option<Window
     }
     // Of states the last one in time counts; in continuous time all up to the constant do, which is the nearest tick, as that of a
     // bound is.
-    let is_out = |ticks: u64| {
-        if clock.is_jumps() {
-            return clock.seconds(Tick(2 * ticks + 1)) / 2.0 >= c;
-        }
-        let time = clock.seconds(Tick(ticks));
-        time > c || strictly && time >= c
+    let last = if clock.is_jumps() {
+        let is_in = |ticks: u64| clock.seconds(Tick(2 * ticks + 1)) / 2.0 < c;
+        (c >= 0.0).then(|| last_tick(FAR - 1, is_in).map_or(0, |last| last + 1))
+    } else {
+        in_time(if strictly { Relation::Less } else { Relation::AtMost }, c, clock, FAR - 1)
     };
-    let (mut first, mut beyond) = (0, FAR);
-    while first < beyond {
-        let middle = first + (beyond - first) / 2;
-        if is_out(middle) { beyond = middle } else { first = middle + 1 }
-    }
-    let last = if clock.is_jumps() { (c >= 0.0).then_some(first) } else { first.checked_sub(1) };
     Some((goal, last.map(|last| Window { from: Tick(0), to: Some(Tick(last)) })))
 }
 

@@ -3,9 +3,9 @@
 use super::Reading;
 use super::moment::Moment;
 use super::number::Number;
-use super::present::Present;
 use super::track::Known;
 use super::truth::{Ref, Step, Truth};
+use crate::logic::present::Present;
 
 /// Most pieces that are stored; a trial that needs more is unresolved.
 const MOST_PIECES: usize = 1 << 20;

@@ -6,9 +6,9 @@
 use super::average::Average;
 use super::moment::{Moment, instant};
 use super::number::Number;
-use super::present::Present;
 use super::track::{Fresh, Known, Track};
 use crate::logic::formula::Relation;
+use crate::logic::present::Present;
 
 /// An operand, perhaps negated.
 #[derive(Clone, Copy, Debug)]

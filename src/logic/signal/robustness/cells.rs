@@ -3,8 +3,8 @@
 use super::curve::{Curve, Reader};
 use super::fold::{self, Way, larger};
 use crate::logic::invalid::Invalid;
+use crate::logic::present::Present;
 use crate::logic::signal::moment::{FOREVER, Moment};
-use crate::logic::signal::present::Present;
 use crate::logic::signal::truth::{Machine, Ref, Seen, Truth};
 
 /// Most pieces that are stored; a trial that needs more is unresolved.
