@@ -20,6 +20,16 @@ pub enum Part {
     Term(TermId),
 }
 
+impl Part {
+    /// Its place among all parts of a tree, formulas first.
+    pub(super) fn place(self, tree: &Tree) -> usize {
+        match self {
+            Self::Node(id) => id.0 as usize,
+            Self::Term(id) => tree.nodes.len() + id.0 as usize,
+        }
+    }
+}
+
 /// Where a part is asked about, seen from the part above it.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Ask {
@@ -113,10 +123,7 @@ pub fn looks_ahead(tree: &Tree, root: Part) -> Result<bool, Invalid> {
 pub(super) fn children_first(tree: &Tree, root: Part) -> Result<Vec<Part>, Invalid> {
     const NEW: u8 = 0;
     const OPEN: u8 = 1;
-    let slot = |part: Part| match part {
-        Part::Node(id) => id.0 as usize,
-        Part::Term(id) => tree.nodes.len() + id.0 as usize,
-    };
+    let slot = |part: Part| part.place(tree);
     // 0: not seen, 1: being visited (meeting it again is a circle), 2 + n: done, n levels below it.
     let mut state = vec![0u64; tree.nodes.len() + tree.terms.len()];
     let mut order = Vec::new();
@@ -173,10 +180,7 @@ impl Asked {
 pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, clock: Clock) -> Result<Asked, Invalid> {
     let dense = clock.is_jumps();
     let order = children_first(tree, root)?;
-    let slot = |part: Part| match part {
-        Part::Node(id) => id.0 as usize,
-        Part::Term(id) => tree.nodes.len() + id.0 as usize,
-    };
+    let slot = |part: Part| part.place(tree);
     let end = |at: u64| horizon.map_or(at, |horizon| horizon.0.max(at));
     let mut parts: Vec<Option<(u64, u64)>> = vec![None; tree.nodes.len() + tree.terms.len()];
     parts[slot(root)] = Some((0, 0));

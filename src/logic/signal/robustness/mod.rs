@@ -6,8 +6,8 @@
 //! an upper bound of a margin, so that the sign is known where the verdict falls.
 
 mod cells;
-mod curve;
 mod fold;
+mod reader;
 
 use super::moment::{Moment, Scale};
 use super::plan::plan_cells;
