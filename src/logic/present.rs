@@ -1,4 +1,4 @@
-//! Truths and numbers of the present state alone: straight-line code.
+//! Truths and numbers of the present state alone, as straight-line code, and which parts of a tree they are.
 
 use super::formula::{Node, NodeId, Operation, Relation, Term, TermId, Tree};
 use super::reach::Part;

@@ -139,7 +139,11 @@ impl Cells {
             let truth = |k: usize, at: Moment| truths[k] = truths[k].min(at);
             let number = |k: usize, at: Moment| numbers[k] = numbers[k].min(at);
             match *cell {
-                Cell::Truth(k) => self.truths[k].needs(truth, number),
+                Cell::Truth(k) => {
+                    if let Some(open) = self.truths[k].track.first_open() {
+                        self.truths[k].machine.needs(open, truth, number);
+                    }
+                }
                 Cell::Number(k) => self.numbers[k].needs(truth, number),
             }
         }

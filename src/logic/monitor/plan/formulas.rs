@@ -111,14 +111,15 @@ impl Builder<'_> {
         }
     }
 
-    /// The answer at position `at` to a formula that is asked about there alone.
+    /// The answer at position `at` to what is asked about there alone.
     pub(super) fn held(&mut self, child: Ref, at: u64) -> Ref {
         if child.place != Place::Now {
             return child;
         }
         self.touch(child, (at, at));
-        let at = at + child.ahead;
-        self.answer(Machine::Capture(child), (at, at), 0, false)
+        let (at, numeric) = (at + child.ahead, self.facts[child.cell].numeric);
+        let machine = if numeric { Machine::CaptureNumber(child) } else { Machine::Capture(child) };
+        self.answer(machine, (at, at), 0, numeric)
     }
 
     /// Any of these at the positions `lo ..= hi`.
@@ -215,21 +216,30 @@ impl Builder<'_> {
                 let latency = width.saturating_add(delay);
                 self.late(Machine::Slide { child, width, cut }, (lo, hi), latency, true, false)
             }
-            Some(width) => self.doubled(child, width, (lo, hi), cut),
+            // It settles out of order.
+            Some(width) => {
+                self.doubled(child, width, (lo, hi), |all, halves, range| all.any_late(&halves, range, cut))
+            }
         };
         Made::Of(later(cell, ahead))
     }
 
-    /// Finally over a child that settles out of order: windows of 2, 4, 8, … states, each of two of the
-    /// last size, so that a change costs the logarithm of the width.
-    fn doubled(&mut self, child: Ref, width: u64, (lo, hi): (u64, u64), cut: bool) -> Ref {
+    /// Something over windows of 2, 4, 8, … states, each of two of the last size, so that a change costs the logarithm of
+    /// the width.
+    pub(super) fn doubled(
+        &mut self,
+        child: Ref,
+        width: u64,
+        (lo, hi): Span,
+        mut join: impl FnMut(&mut Self, [Ref; 2], Span) -> Ref,
+    ) -> Ref {
         let states = width + 1;
         let (mut size, mut half) = (1, child);
         while size * 2 <= states {
-            half = self.any_late(&[half, later(half, size)], (lo, hi + states - 2 * size), cut);
+            half = join(self, [half, later(half, size)], (lo, hi + states - 2 * size));
             size *= 2;
         }
-        if size == states { half } else { self.any_late(&[half, later(half, states - size)], (lo, hi), cut) }
+        if size == states { half } else { join(self, [half, later(half, states - size)], (lo, hi)) }
     }
 
     fn side(&mut self, side: Side, at: Span) -> Result<Made<bool>, Invalid> {

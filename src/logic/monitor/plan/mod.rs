@@ -198,7 +198,7 @@ impl Plan {
             },
             Part::Term(id) => match builder.number(id, (0, 0))? {
                 Made::Constant(value) => Answer::Value(value),
-                Made::Of(child) => Answer::Metric(builder.held_number(child, 0)),
+                Made::Of(child) => Answer::Metric(builder.held(child, 0)),
             },
         };
         builder.finish(answer)

@@ -119,7 +119,7 @@ impl Builder<'_> {
             return super::later(now, ahead);
         }
         if lo == hi {
-            let (x, y) = (self.held_number(x, lo), self.held_number(y, lo));
+            let (x, y) = (self.held(x, lo), self.held(y, lo));
             return self.answer(Machine::CompareHeld(relation, x, y), (lo, lo), self.horizon, false);
         }
         let pair = self.pair(x, y, (lo, hi));
@@ -150,16 +150,6 @@ impl Builder<'_> {
         }
     }
 
-    /// The answer at position `at` to a number that is asked about there alone.
-    pub(super) fn held_number(&mut self, child: Ref, at: u64) -> Ref {
-        if child.place != Place::Now {
-            return child;
-        }
-        self.touch(child, (at, at));
-        let at = at + child.ahead;
-        self.answer(Machine::CaptureNumber(child), (at, at), 0, true)
-    }
-
     /// The number `id`, asked about at the positions `lo ..= hi`.
     pub(super) fn number(&mut self, id: TermId, (lo, hi): Span) -> Result<Made<f64>, Invalid> {
         if let Some(value) = self.constants[id.0 as usize] {
@@ -188,7 +178,7 @@ impl Builder<'_> {
             Term::AtEnd(x) => match self.number(*x, (self.horizon, self.horizon))? {
                 Made::Constant(value) => Made::Constant(value),
                 Made::Of(end) => {
-                    let end = self.held_number(end, self.horizon);
+                    let end = self.held(end, self.horizon);
                     Made::Of(if lo == hi {
                         end
                     } else {
@@ -220,7 +210,7 @@ impl Builder<'_> {
             return super::later(self.combined_now(arithmetic, x, y), ahead);
         }
         if lo == hi {
-            let (x, y) = (self.held_number(x, lo), self.held_number(y, lo));
+            let (x, y) = (self.held(x, lo), self.held(y, lo));
             return self.answer(Machine::CombineHeld(arithmetic, x, y), (lo, lo), self.horizon, true);
         }
         self.combined_late(arithmetic, x, y, (lo, hi))
@@ -276,19 +266,10 @@ impl Builder<'_> {
             Aggregation::Sum | Aggregation::Mean => None,
         };
         if let (Some(operation), Some(width), true) = (smallest, below.width, lo < hi) {
-            // Windows of 2, 4, 8, … states, each of two of the last size.
-            let states = width + 1;
             let arithmetic = Arithmetic::Of(operation);
-            let (mut size, mut half) = (1, child);
-            while size * 2 <= states {
-                let (next, end) = (super::later(half, size), hi + states - 2 * size);
-                half = self.combined_late(arithmetic, half, next, (lo, end));
-                size *= 2;
-            }
-            if size < states {
-                let next = super::later(half, states - size);
-                half = self.combined_late(arithmetic, half, next, (lo, hi));
-            }
+            let half = self.doubled(child, width, (lo, hi), |all, [x, y], range| {
+                all.combined_late(arithmetic, x, y, range)
+            });
             return Ok(Made::Of(super::later(half, ahead)));
         }
         let (at, states) = (hi.saturating_sub(lo) + 1, self.horizon.saturating_sub(lo) + 1);

@@ -29,27 +29,23 @@ impl Builder<'_> {
                 while let (None, Node::Not(x)) = (self.probe(id), &self.tree.nodes[id.0 as usize]) {
                     (id, negated) = (*x, !negated);
                 }
-                let until = |first, second, weak, turned: bool| {
-                    Some(Question::Until { first, second, weak, negated: negated != turned })
+                let (first, second, weak, turned, window) =
+                    match (self.probe(id), &self.tree.nodes[id.0 as usize]) {
+                        (Some(_), _) => (None, id, false, false, Window { from: Tick(0), to: Some(Tick(0)) }),
+                        (None, Node::Finally(w, x)) => (None, *x, false, false, *w),
+                        (None, Node::Globally(w, x)) => (None, *x, false, true, *w),
+                        (None, Node::Until(w, p, q)) => (Some(*p), *q, false, false, *w),
+                        (None, Node::WeakUntil(w, p, q)) => (Some(*p), *q, true, false, *w),
+                        (None, Node::Release(w, p, q)) => (Some(*p), *q, false, true, *w),
+                        _ => return None,
+                    };
+                let probe = |id| self.probe(id).map(|probe| Probe { negated: turned, ..probe });
+                let first = match first {
+                    Some(first) => Some(probe(first)?),
+                    None => None,
                 };
-                let not = |probe: Probe| Probe { negated: !probe.negated, ..probe };
-                match (self.probe(id), &self.tree.nodes[id.0 as usize]) {
-                    (Some(now), _) => {
-                        (until(None, now, false, false)?, Window { from: Tick(0), to: Some(Tick(0)) })
-                    }
-                    (None, Node::Finally(w, x)) => (until(None, self.probe(*x)?, false, false)?, *w),
-                    (None, Node::Globally(w, x)) => (until(None, not(self.probe(*x)?), false, true)?, *w),
-                    (None, Node::Until(w, p, q)) => {
-                        (until(Some(self.probe(*p)?), self.probe(*q)?, false, false)?, *w)
-                    }
-                    (None, Node::WeakUntil(w, p, q)) => {
-                        (until(Some(self.probe(*p)?), self.probe(*q)?, true, false)?, *w)
-                    }
-                    (None, Node::Release(w, p, q)) => {
-                        (until(Some(not(self.probe(*p)?)), not(self.probe(*q)?), false, true)?, *w)
-                    }
-                    _ => return None,
-                }
+                let second = probe(second)?;
+                (Question::Until { first, second, weak, negated: negated != turned }, window)
             }
             Part::Term(id) => match &self.tree.terms[id.0 as usize] {
                 Term::Window(Aggregation::Sum, ..) => return None,

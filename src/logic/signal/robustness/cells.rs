@@ -200,17 +200,7 @@ impl Margin {
             }
             return;
         }
-        match &self.machine {
-            Machine::Any(operands) => operands.iter().for_each(|x| need(x.cell, open)),
-            Machine::Reach(Seen::Within { from, .. }, x) => need(x.cell, open + from),
-            Machine::Reach(Seen::Soon { .. }, x) => need(x.cell, open),
-            Machine::Until { from, first, second, .. } => {
-                need(first.cell, open);
-                need(second.cell, open + from);
-            }
-            Machine::Spread(x) => need(x.cell, 0),
-            _ => {}
-        }
+        self.machine.needs(open, need, |_, _| {});
     }
 }
 
