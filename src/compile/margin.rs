@@ -141,7 +141,6 @@ impl Rewriting<'_, '_> {
             return *known;
         }
         let made = match self.elaborator.tree.nodes[id.0 as usize].clone() {
-            node @ Node::Constant(_) => self.elaborator.node(node),
             Node::Atom(atom) => {
                 let truth = self.elaborator.atoms[atom.0 as usize].clone();
                 let text = self.elaborator.texts.atoms.get(atom.0 as usize).cloned();
@@ -157,37 +156,9 @@ impl Rewriting<'_, '_> {
                 self.text = text.unwrap_or_default();
                 self.comparison(relation, a, b)
             }
-            Node::Not(a) => {
-                let a = self.node(a);
-                self.elaborator.node(Node::Not(a))
-            }
-            Node::And(list) => {
-                let list = list.into_iter().map(|a| self.node(a)).collect();
-                self.elaborator.node(Node::And(list))
-            }
-            Node::Or(list) => {
-                let list = list.into_iter().map(|a| self.node(a)).collect();
-                self.elaborator.node(Node::Or(list))
-            }
-            Node::Finally(window, a) => {
-                let a = self.node(a);
-                self.elaborator.node(Node::Finally(window, a))
-            }
-            Node::Globally(window, a) => {
-                let a = self.node(a);
-                self.elaborator.node(Node::Globally(window, a))
-            }
-            Node::Until(window, a, b) => {
-                let (a, b) = (self.node(a), self.node(b));
-                self.elaborator.node(Node::Until(window, a, b))
-            }
-            Node::WeakUntil(window, a, b) => {
-                let (a, b) = (self.node(a), self.node(b));
-                self.elaborator.node(Node::WeakUntil(window, a, b))
-            }
-            Node::Release(window, a, b) => {
-                let (a, b) = (self.node(a), self.node(b));
-                self.elaborator.node(Node::Release(window, a, b))
+            node => {
+                let node = node.map(|part| self.node(part));
+                self.elaborator.node(node)
             }
         };
         self.nodes.insert(id.0, made);
@@ -200,29 +171,13 @@ impl Rewriting<'_, '_> {
         }
         let made = match self.elaborator.tree.terms[id.0 as usize].clone() {
             Term::Constant(_) | Term::Signal(_) => id,
-            Term::Combine(operation, a, b) => {
-                let (a, b) = (self.term(a), self.term(b));
-                self.elaborator.term(Term::Combine(operation, a, b))
-            }
-            Term::Abs(a) => {
-                let a = self.term(a);
-                self.elaborator.term(Term::Abs(a))
-            }
-            Term::Window(aggregation, window, a) => {
-                let a = self.term(a);
-                self.elaborator.term(Term::Window(aggregation, window, a))
-            }
-            Term::Later(tick, a) => {
-                let a = self.term(a);
-                self.elaborator.term(Term::Later(tick, a))
-            }
-            Term::AtEnd(a) => {
-                let a = self.term(a);
-                self.elaborator.term(Term::AtEnd(a))
-            }
             Term::TimeUntil(node) => {
                 let node = self.node(node);
                 self.elaborator.term(Term::TimeUntil(node))
+            }
+            term => {
+                let term = term.map(|part| self.term(part));
+                self.elaborator.term(term)
             }
         };
         self.terms.insert(id.0, made);
@@ -246,13 +201,10 @@ impl Rewriting<'_, '_> {
                 let inner = self.part(inner);
                 self.elaborator.node(Node::Not(inner))
             }
-            Form::All(list) => {
+            Form::All(list) | Form::Any(list) => {
+                let all = matches!(part.form, Form::All(_));
                 let list = list.iter().map(|one| self.part(one)).collect();
-                self.elaborator.node(Node::And(list))
-            }
-            Form::Any(list) => {
-                let list = list.iter().map(|one| self.part(one)).collect();
-                self.elaborator.node(Node::Or(list))
+                self.elaborator.node(if all { Node::And(list) } else { Node::Or(list) })
             }
             Form::Both(a, b) => {
                 let (a, b) = (self.part(a), self.part(b));
@@ -273,13 +225,10 @@ impl Rewriting<'_, '_> {
                 let inner = self.condition(inner);
                 self.elaborator.node(Node::Not(inner))
             }
-            Bool::And(list) => {
+            Bool::And(list) | Bool::Or(list) => {
+                let all = matches!(truth, Bool::And(_));
                 let list = list.iter().map(|one| self.condition(one)).collect();
-                self.elaborator.node(Node::And(list))
-            }
-            Bool::Or(list) => {
-                let list = list.iter().map(|one| self.condition(one)).collect();
-                self.elaborator.node(Node::Or(list))
+                self.elaborator.node(if all { Node::And(list) } else { Node::Or(list) })
             }
             Bool::Iff(a, b) => {
                 let (a, b) = (self.condition(a), self.condition(b));

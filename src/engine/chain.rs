@@ -122,8 +122,8 @@ impl StepChain {
             let Root::Formula(root) = prepared.columns[*column] else { return None };
             Flat::of(&prepared.tree, root, prepared.horizon, clock)
         };
-        let flats = columns.iter().map(flat).collect::<Option<Vec<Flat>>>()?;
-        let sort = |k: usize, atoms: &[bool], signals: &[f64]| flats[k].sort(&prepared.tree, atoms, signals);
+        let mut flats = columns.iter().map(flat).collect::<Option<Vec<Flat>>>()?;
+        let sort = |k: usize, atoms: &[bool], signals: &[f64]| flats[k].sort(atoms, signals);
         let mut sorts = Sorts::of(prepared, columns, &chain.space, sort);
         for &state in chain.space.reachable() {
             sorts[state as usize].stop |= if chain.is_still(state) { STILL } else { 0 };

@@ -6,10 +6,9 @@
 //! largest of windows with a queue as Lemire's, 2006; an until with a bound is one without and a finally with it, as
 //! Donzé, Ferrère and Maler, 2013, have it); then the way down from the root follows the margin that it has.
 
-use super::formula::{NodeId, Relation, Tree};
-use super::offline::{Offline, Recording, Slot};
+use super::formula::{NodeId, Operation, Relation, Tree};
+use super::offline::{Offline, Recording, Slide, Slot, backward};
 use crate::base::tick::Tick;
-use std::collections::VecDeque;
 
 /// A margin and whose it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +80,8 @@ impl Margins<'_> {
                 .map(|k| parts.iter().fold(f64::NAN, |best, part| pick(best, self.at(*part, k), !any)))
                 .collect(),
             Slot::Window { from, to, of, any } => {
-                let mut queue = Slide::new(self.offline.seen(), !any);
+                let mut queue =
+                    Slide::new(self.offline.seen(), if *any { Operation::Max } else { Operation::Min });
                 backward(states, |at| {
                     let window = (at.saturating_add(*from), self.offline.end(at, *to));
                     queue.of(window, |k| self.at(*of, k))
@@ -91,9 +91,9 @@ impl Margins<'_> {
                 let hold = |k| turned(self.at(first.0, k), first.1);
                 let goal = |k| turned(self.at(second.0, k), second.1);
                 let seen = self.offline.seen();
-                let mut least = Slide::new(seen, true);
-                let mut all = Slide::new(seen, true);
-                let mut most = Slide::new(seen, false);
+                let mut least = Slide::new(seen, Operation::Min);
+                let mut all = Slide::new(seen, Operation::Min);
+                let mut most = Slide::new(seen, Operation::Max);
                 // Without a bound, from the state `reached` on.
                 let (mut until, mut reached) = (f64::NEG_INFINITY, seen);
                 backward(states, |at| {
@@ -148,44 +148,6 @@ impl Margins<'_> {
                 _ => return None,
             }
         }
-    }
-}
-
-/// Values from the last state to the first, in order of states.
-fn backward(states: std::ops::Range<u64>, of: impl FnMut(u64) -> f64) -> Vec<f64> {
-    let mut values: Vec<f64> = states.rev().map(of).collect();
-    values.reverse();
-    values
-}
-
-/// The smallest or largest margin of a window that moves back.
-struct Slide {
-    queue: VecDeque<(u64, f64)>,
-    reached: u64,
-    smallest: bool,
-}
-
-impl Slide {
-    fn new(seen: u64, smallest: bool) -> Self {
-        Self { queue: VecDeque::new(), reached: seen, smallest }
-    }
-
-    fn of(&mut self, (first, last): (u64, u64), margin: impl Fn(u64) -> f64) -> f64 {
-        while self.reached > first {
-            self.reached -= 1;
-            let next = margin(self.reached);
-            if next.is_nan() {
-                continue;
-            }
-            while self.queue.front().is_some_and(|&(_, later)| pick(next, later, self.smallest) == next) {
-                self.queue.pop_front();
-            }
-            self.queue.push_front((self.reached, next));
-        }
-        while self.queue.back().is_some_and(|&(k, _)| k > last) {
-            self.queue.pop_back();
-        }
-        self.queue.back().map_or(f64::NAN, |&(_, margin)| margin)
     }
 }
 

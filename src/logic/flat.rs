@@ -5,18 +5,20 @@
 //! beforehand, and a verdict is a look at two bits and the number of the state. It falls at the same state as
 //! that of the general monitor (a test holds it).
 
-use super::formula::{Node, NodeId, Term, TermId, Tree};
+use super::formula::{Node, NodeId, Tree};
 use super::monitor::Monitor;
+use super::present::{Parts, Present};
 use super::reach::{Part, children_first};
 use crate::base::tick::{Clock, Tick};
 
 /// A flat formula.
 #[derive(Clone, Debug)]
 pub struct Flat {
-    /// Parts of what must be so up to the goal, children first; anything for `None`.
-    hold: Option<Vec<Part>>,
-    /// Parts of the goal, children first.
-    goal: Vec<Part>,
+    present: Present,
+    /// Where the code has what must be so up to the goal; anything for `None`.
+    hold: Option<usize>,
+    /// Where it has the goal.
+    goal: usize,
     /// The goal counts negated: `G a` is not (true U not a).
     inverted: bool,
     negated: bool,
@@ -38,8 +40,8 @@ impl Flat {
     /// The flat form of a formula, if it has one in which neither goal nor hold folds to a constant and no
     /// implication is watched.
     pub fn of(tree: &Tree, root: NodeId, horizon: Tick, clock: Clock) -> Option<Self> {
-        let monitor = |node| Monitor::formula(tree, node, horizon, clock).ok();
-        if monitor(root)?.antecedents().next().is_some() {
+        let monitor = Monitor::formula(tree, root, horizon, clock).ok()?;
+        if monitor.antecedents().next().is_some() {
             return None;
         }
         let (node, negated) = match &tree.nodes[root.0 as usize] {
@@ -52,17 +54,20 @@ impl Flat {
             Node::Until(window, hold, goal) => (window, Some(*hold), *goal, false),
             _ => return None,
         };
-        let parts = |node| {
-            let parts = present_parts(tree, node)?;
-            monitor(node).is_some_and(|m| m.constant().is_none()).then_some(parts)
-        };
+        let mut parts = Parts::new(tree, false);
+        for part in children_first(tree, Part::Node(root)).ok()? {
+            parts.note(part);
+        }
+        let slot = |id: NodeId| parts.node_slots[id.0 as usize];
         let hold = match hold {
-            Some(hold) => Some(parts(hold)?),
+            Some(hold) => Some(slot(hold)?),
             None => None,
         };
+        let goal = slot(goal)?;
         Some(Self {
+            present: parts.present,
             hold,
-            goal: parts(goal)?,
+            goal,
             inverted,
             negated: negated ^ inverted,
             from: window.from.0,
@@ -71,11 +76,11 @@ impl Flat {
     }
 
     /// What a state with these atoms and signals is for it. What is missing counts as false and as NaN.
-    pub fn sort(&self, tree: &Tree, atoms: &[bool], signals: &[f64]) -> Sort {
-        let (known, state) = (&mut Known::default(), (atoms, signals));
+    pub fn sort(&mut self, atoms: &[bool], signals: &[f64]) -> Sort {
+        self.present.read(atoms, signals);
         Sort {
-            hold: self.hold.as_ref().is_none_or(|parts| truth(tree, parts, state, known)),
-            goal: truth(tree, &self.goal, state, known) ^ self.inverted,
+            hold: self.hold.is_none_or(|hold| self.present.truth(hold)),
+            goal: self.present.truth(self.goal) ^ self.inverted,
         }
     }
 
@@ -111,65 +116,6 @@ impl Flat {
     }
 }
 
-/// The parts of a formula of the present state, children first; none where another state is asked about.
-fn present_parts(tree: &Tree, node: NodeId) -> Option<Vec<Part>> {
-    let parts = children_first(tree, Part::Node(node)).ok()?;
-    let is_present = |part: &Part| match part {
-        Part::Node(id) => matches!(
-            tree.nodes[id.0 as usize],
-            Node::Constant(_) | Node::Atom(_) | Node::Compare(..) | Node::Not(_) | Node::And(_) | Node::Or(_)
-        ),
-        Part::Term(id) => matches!(
-            tree.terms[id.0 as usize],
-            Term::Constant(_) | Term::Signal(_) | Term::Combine(..) | Term::Abs(_)
-        ),
-    };
-    parts.iter().all(is_present).then_some(parts)
-}
-
-/// The truth of a formula of the present state, from its parts; each is looked at once, however often it is shared.
-fn truth(tree: &Tree, parts: &[Part], (atoms, signals): (&[bool], &[f64]), known: &mut Known) -> bool {
-    known.truths.resize(tree.nodes.len(), false);
-    known.numbers.resize(tree.terms.len(), f64::NAN);
-    let mut last = false;
-    for part in parts {
-        match part {
-            Part::Node(id) => {
-                let of = |id: &NodeId| known.truths[id.0 as usize];
-                let number = |id: &TermId| known.numbers[id.0 as usize];
-                last = match &tree.nodes[id.0 as usize] {
-                    Node::Constant(constant) => *constant,
-                    Node::Atom(atom) => atoms.get(atom.0 as usize).is_some_and(|atom| *atom),
-                    Node::Compare(relation, a, b) => relation.holds(number(a), number(b)),
-                    Node::Not(a) => !of(a),
-                    Node::And(list) => list.iter().all(of),
-                    Node::Or(list) => list.iter().any(of),
-                    _ => false,
-                };
-                known.truths[id.0 as usize] = last;
-            }
-            Part::Term(id) => {
-                let of = |id: &TermId| known.numbers[id.0 as usize];
-                known.numbers[id.0 as usize] = match &tree.terms[id.0 as usize] {
-                    Term::Constant(value) => *value,
-                    Term::Signal(signal) => signals.get(signal.0 as usize).copied().unwrap_or(f64::NAN),
-                    Term::Combine(operation, a, b) => operation.apply(of(a), of(b)),
-                    Term::Abs(a) => of(a).abs(),
-                    _ => f64::NAN,
-                };
-            }
-        }
-    }
-    last
-}
-
-/// The known truth in one state, by the numbers of the parts.
-#[derive(Default)]
-struct Known {
-    truths: Vec<bool>,
-    numbers: Vec<f64>,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -186,9 +132,9 @@ mod tests {
         }
         let always = tree.node(Node::Globally(Window { from: Tick(0), to: Some(Tick(9)) }, x));
         // x <=> x is always so, which nobody looks for: it is a goal like any other.
-        let flat = Flat::of(&tree, always, Tick(9), Clock::Steps).unwrap();
+        let mut flat = Flat::of(&tree, always, Tick(9), Clock::Steps).unwrap();
         for atom in [false, true] {
-            assert_eq!(flat.sort(&tree, &[atom], &[]), Sort { hold: true, goal: false });
+            assert_eq!(flat.sort(&[atom], &[]), Sort { hold: true, goal: false });
         }
     }
 }

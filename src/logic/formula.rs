@@ -3,7 +3,7 @@
 //! Given-Wilson et al. 2017, equation (7), with intervals, weak until, release, and numbers of windows.
 //! A tree holds both kinds of nodes; children stand before their parents.
 
-use crate::base::tick::Tick;
+use crate::base::tick::{Clock, Tick};
 use std::hash::{Hash, Hasher};
 
 /// Index of a truth value that the observer supplies for each state.
@@ -59,6 +59,24 @@ pub enum Node {
     /// The second holds at every state of the window up to and including the first state at which the
     /// first holds (which counts from the present state on): not (not first until not second).
     Release(Window, NodeId, NodeId),
+}
+
+impl Node {
+    /// The same operator over other formulas, in order.
+    #[must_use]
+    pub fn map(self, mut of: impl FnMut(NodeId) -> NodeId) -> Self {
+        match self {
+            Self::Constant(_) | Self::Atom(_) | Self::Compare(..) => self,
+            Self::Not(x) => Self::Not(of(x)),
+            Self::And(all) => Self::And(all.into_iter().map(of).collect()),
+            Self::Or(all) => Self::Or(all.into_iter().map(of).collect()),
+            Self::Finally(window, x) => Self::Finally(window, of(x)),
+            Self::Globally(window, x) => Self::Globally(window, of(x)),
+            Self::Until(window, p, q) => Self::Until(window, of(p), of(q)),
+            Self::WeakUntil(window, p, q) => Self::WeakUntil(window, of(p), of(q)),
+            Self::Release(window, p, q) => Self::Release(window, of(p), of(q)),
+        }
+    }
 }
 
 /// Relations of a comparison.
@@ -183,6 +201,21 @@ pub(super) fn bracket(mean: f64, least: f64, most: f64) -> f64 {
     Operation::Max.apply(Operation::Min.apply(mean, most), least)
 }
 
+/// The last tick, of those up to `most`, whose time is less than `c`, or at most; none where the first is too late.
+pub(super) fn in_time(relation: Relation, c: f64, clock: Clock, most: u64) -> Option<u64> {
+    last_tick(most, |ticks| relation.holds(clock.seconds(Tick(ticks)), c))
+}
+
+/// The last tick, of those up to `most`, that is in time, by bisection; none where the first is not.
+pub(super) fn last_tick(most: u64, is_in_time: impl Fn(u64) -> bool) -> Option<u64> {
+    let (mut count, mut beyond) = (0, most + 1);
+    while count < beyond {
+        let middle = count + (beyond - count) / 2;
+        if is_in_time(middle) { count = middle + 1 } else { beyond = middle }
+    }
+    count.checked_sub(1)
+}
+
 /// A number of the states from the present one on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Term {
@@ -203,6 +236,21 @@ pub enum Term {
     /// Seconds until the formula first holds, counted from the present state; infinite if it never does
     /// up to the horizon.
     TimeUntil(NodeId),
+}
+
+impl Term {
+    /// The same operator over other numbers, in order.
+    #[must_use]
+    pub fn map(self, mut of: impl FnMut(TermId) -> TermId) -> Self {
+        match self {
+            Self::Constant(_) | Self::Signal(_) | Self::TimeUntil(_) => self,
+            Self::Combine(operation, x, y) => Self::Combine(operation, of(x), of(y)),
+            Self::Abs(x) => Self::Abs(of(x)),
+            Self::Window(aggregation, window, x) => Self::Window(aggregation, window, of(x)),
+            Self::Later(by, x) => Self::Later(by, of(x)),
+            Self::AtEnd(x) => Self::AtEnd(of(x)),
+        }
+    }
 }
 
 impl Hash for Term {
@@ -231,6 +279,38 @@ pub struct Tree {
 }
 
 impl Tree {
+    /// The value of a number that is the same everywhere; `of` has the values of its operands.
+    pub(super) fn constant(&self, id: TermId, of: impl Fn(&TermId) -> Option<f64>) -> Option<f64> {
+        match &self.terms[id.0 as usize] {
+            Term::Constant(value) => Some(*value),
+            Term::Combine(operation, x, y) => Some(operation.apply(of(x)?, of(y)?)),
+            Term::Abs(x) => of(x).map(f64::abs),
+            Term::Later(_, x) | Term::AtEnd(x) => of(x),
+            Term::Signal(_) | Term::Window(..) | Term::TimeUntil(_) => None,
+        }
+    }
+
+    /// The left side of an implication: `a => b` is lowered to `!a | b`.
+    pub(super) fn antecedent(&self, id: NodeId) -> Option<NodeId> {
+        let Node::Or(parts) = &self.nodes[id.0 as usize] else { return None };
+        let [first, _] = parts.as_slice() else { return None };
+        let Node::Not(antecedent) = self.nodes[first.0 as usize] else { return None };
+        Some(antecedent)
+    }
+
+    /// A comparison of an extreme of a window, or of a later number, with a constant is one of the number inside: at some
+    /// state of the window, or (false) at all.
+    pub(super) fn within(&self, relation: Relation, x: TermId) -> Option<(Window, TermId, bool)> {
+        let is_upper = matches!(relation, Relation::Less | Relation::AtMost);
+        let is_lower = matches!(relation, Relation::Greater | Relation::AtLeast);
+        match &self.terms[x.0 as usize] {
+            Term::Later(by, x) => Some((Window { from: *by, to: Some(*by) }, *x, true)),
+            Term::Window(Aggregation::Min, w, x) if is_upper || is_lower => Some((*w, *x, is_upper)),
+            Term::Window(Aggregation::Max, w, x) if is_upper || is_lower => Some((*w, *x, is_lower)),
+            _ => None,
+        }
+    }
+
     /// Whether a number is a time until something, or made of one.
     pub fn is_time_until(&self, term: TermId) -> bool {
         match &self.terms[term.0 as usize] {

@@ -10,6 +10,7 @@ pub mod invalid;
 pub mod monitor;
 mod need;
 pub mod offline;
+mod present;
 mod reach;
 pub mod signal;
 mod source;

@@ -51,10 +51,7 @@ impl Needs {
     }
 
     fn add(&mut self, tree: &Tree, root: Part, horizon: u64) -> Result<(), Invalid> {
-        let slot = |part: Part| match part {
-            Part::Node(id) => id.0 as usize,
-            Part::Term(id) => tree.nodes.len() + id.0 as usize,
-        };
+        let slot = |part: Part| part.place(tree);
         let mut asked: Vec<Option<Span>> = vec![None; tree.nodes.len() + tree.terms.len()];
         asked[slot(root)] = Some((0, 0));
         // Parents first: the span of a part is known before its own parts are looked at.

@@ -1,7 +1,9 @@
 //! How far into a trial a formula looks: the order of its parts, and the last state that each of them is
 //! asked about.
 
-use super::formula::{AtomId, Node, NodeId, Relation, SignalId, Term, TermId, Tree, Window};
+use super::formula::{
+    AtomId, Node, NodeId, Relation, SignalId, Term, TermId, Tree, Window, in_time, last_tick,
+};
 use super::invalid::Invalid;
 use crate::base::tick::{Clock, Tick};
 use std::collections::BTreeSet;
@@ -16,6 +18,16 @@ pub enum Part {
     Node(NodeId),
     /// A number.
     Term(TermId),
+}
+
+impl Part {
+    /// Its place among all parts of a tree, formulas first.
+    pub(super) fn place(self, tree: &Tree) -> usize {
+        match self {
+            Self::Node(id) => id.0 as usize,
+            Self::Term(id) => tree.nodes.len() + id.0 as usize,
+        }
+    }
 }
 
 /// Where a part is asked about, seen from the part above it.
@@ -85,19 +97,12 @@ fn timed(tree: &Tree, part: Part, clock: Clock) -> Option<(NodeId, Option<Window
     }
     // Of states the last one in time counts; in continuous time all up to the constant do, which is the nearest tick, as that of a
     // bound is.
-    let is_out = |ticks: u64| {
-        if clock.is_jumps() {
-            return clock.seconds(Tick(2 * ticks + 1)) / 2.0 >= c;
-        }
-        let time = clock.seconds(Tick(ticks));
-        time > c || strictly && time >= c
+    let last = if clock.is_jumps() {
+        let is_in = |ticks: u64| clock.seconds(Tick(2 * ticks + 1)) / 2.0 < c;
+        (c >= 0.0).then(|| last_tick(FAR - 1, is_in).map_or(0, |last| last + 1))
+    } else {
+        in_time(if strictly { Relation::Less } else { Relation::AtMost }, c, clock, FAR - 1)
     };
-    let (mut first, mut beyond) = (0, FAR);
-    while first < beyond {
-        let middle = first + (beyond - first) / 2;
-        if is_out(middle) { beyond = middle } else { first = middle + 1 }
-    }
-    let last = if clock.is_jumps() { (c >= 0.0).then_some(first) } else { first.checked_sub(1) };
     Some((goal, last.map(|last| Window { from: Tick(0), to: Some(Tick(last)) })))
 }
 
@@ -118,10 +123,7 @@ pub fn looks_ahead(tree: &Tree, root: Part) -> Result<bool, Invalid> {
 pub(super) fn children_first(tree: &Tree, root: Part) -> Result<Vec<Part>, Invalid> {
     const NEW: u8 = 0;
     const OPEN: u8 = 1;
-    let slot = |part: Part| match part {
-        Part::Node(id) => id.0 as usize,
-        Part::Term(id) => tree.nodes.len() + id.0 as usize,
-    };
+    let slot = |part: Part| part.place(tree);
     // 0: not seen, 1: being visited (meeting it again is a circle), 2 + n: done, n levels below it.
     let mut state = vec![0u64; tree.nodes.len() + tree.terms.len()];
     let mut order = Vec::new();
@@ -178,10 +180,7 @@ impl Asked {
 pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, clock: Clock) -> Result<Asked, Invalid> {
     let dense = clock.is_jumps();
     let order = children_first(tree, root)?;
-    let slot = |part: Part| match part {
-        Part::Node(id) => id.0 as usize,
-        Part::Term(id) => tree.nodes.len() + id.0 as usize,
-    };
+    let slot = |part: Part| part.place(tree);
     let end = |at: u64| horizon.map_or(at, |horizon| horizon.0.max(at));
     let mut parts: Vec<Option<(u64, u64)>> = vec![None; tree.nodes.len() + tree.terms.len()];
     parts[slot(root)] = Some((0, 0));

@@ -96,11 +96,6 @@ impl Tracker {
         &self.active
     }
 
-    /// Time of the last step, s.
-    pub const fn last(&self) -> Option<f64> {
-        self.last
-    }
-
     /// Takes out the traces that have ended since the last call. Who never calls keeps them all.
     pub fn take_ended(&mut self) -> Vec<Trace> {
         std::mem::take(&mut self.ended)

@@ -89,16 +89,6 @@ impl Predictions {
         Self(predictions)
     }
 
-    /// Their number.
-    pub const fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Whether there is none.
-    pub const fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
     /// Their quality; `None` without predictions.
     pub fn score(&self) -> Option<BrierScore> {
         scored(self.0.iter().map(|one| (one, 1)))

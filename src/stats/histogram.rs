@@ -44,17 +44,6 @@ impl Histogram {
             self.bins[if bin < last { bin } else { last }] += 1;
         }
     }
-
-    /// The ends of bin number `bin`.
-    pub fn edges(&self, bin: usize) -> (f64, f64) {
-        let at = |k: usize| self.low + (self.high - self.low) * (k as f64 / self.bins.len() as f64);
-        (at(bin), at(bin + 1))
-    }
-
-    /// All values counted.
-    pub fn total(&self) -> u64 {
-        self.bins.iter().sum::<u64>() + self.below + self.above + self.unresolved
-    }
 }
 
 #[cfg(test)]
@@ -69,8 +58,6 @@ mod tests {
         }
         assert_eq!(histogram.bins, [2, 1, 1, 1]);
         assert_eq!((histogram.below, histogram.above, histogram.unresolved), (1, 2, 1));
-        assert_eq!(histogram.total(), 9);
-        assert_eq!(histogram.edges(1), (0.25, 0.5));
         assert!(Histogram::new(1.0, 1.0, 4).is_err());
         assert!(Histogram::new(0.0, 1.0, 0).is_err());
     }

@@ -20,7 +20,7 @@ trait Chain {
 /// Runs the paths of one run; each keeps its states.
 fn run<C: Chain>(chain: &C, scheme: &mut dyn Scheme, seed: u64, branch: u16) -> (f64, u64) {
     let (mut paths, mut steps): (Vec<Vec<C::State>>, u64) = (Vec::new(), 0);
-    while !scheme.finished() {
+    while !scheme.wanted().is_empty() {
         let mut flights = Vec::new();
         for start in scheme.wanted().to_vec() {
             let key = TrialKey { seed, index: paths.len() as u64, branch };

@@ -8,7 +8,7 @@ pub mod gamma;
 pub mod normal;
 mod solve;
 
-pub use beta::{beta_quantile, beta_reg, beta_tails, beta_upper_quantile, ln_beta};
+pub use beta::{beta_quantile, beta_tails, beta_upper_quantile, ln_beta};
 pub use gamma::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile, ln_gamma};
 pub use normal::{erf, erfc, normal_cdf, normal_quantile};
 

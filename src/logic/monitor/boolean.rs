@@ -23,7 +23,6 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
         }
         Machine::AnyLate { children, cut } => {
             let track = &mut cell.track;
-            track.begin(cx.now, !cell.live, cell.need);
             for child in children {
                 for (at, t, f) in events(before, *child, cx.now) {
                     let open = track.open(at, cx.now);
@@ -47,13 +46,11 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
         }
         Machine::CompareLate(relation, x, y) => {
             let track = &mut cell.track;
-            track.begin(cx.now, !cell.live, cell.need);
             for child in [x, y] {
                 for (at, ..) in numbers::events_of(before, *child, cx.now) {
                     compare_late(track, before, (*relation, *x, *y), at, cx.now);
                 }
             }
-            track.ascend();
         }
         Machine::Watch { .. } => watch(cell, before, cx),
         _ => {}

@@ -142,7 +142,6 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             cell.t |= t | f;
         }
         Machine::CombineLate(arithmetic, x, y) => {
-            cell.track.begin(now, !cell.live, cell.need);
             for child in [*x, *y] {
                 for (at, _) in events_of(before, child, now) {
                     let fresh = cell.track.open(at, now)
@@ -155,10 +154,8 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                     }
                 }
             }
-            cell.track.ascend();
         }
         Machine::FoldLate { aggregation, child, width: Some(width), in_order } => {
-            cell.track.begin(now, !cell.live, cell.need);
             for (at, lanes) in events_of(before, *child, now) {
                 // In order, the last state of a window is the last to be known.
                 let oldest = at.wrapping_sub(*width);
@@ -178,10 +175,8 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                     }
                 }
             }
-            cell.track.ascend();
         }
         Machine::FoldLate { aggregation, child, width: None, .. } => {
-            cell.track.begin(now, !cell.live, cell.need);
             let mut position = now;
             // The least and the largest do not depend on the order of states: each window is the next one and a state more.
             let joins = !matches!(aggregation, Aggregation::Sum | Aggregation::Mean);
@@ -199,17 +194,13 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                 cell.track.settle(position, now, fresh, 0);
                 position = position.wrapping_sub(1);
             }
-            cell.track.ascend();
         }
         Machine::TimeLate { child, ticks } => {
-            cell.track.begin(now, !cell.live, cell.need);
             for (at, ..) in events(before, *child, now) {
                 settle_time(&mut cell.track, (&mut cell.numbers, ticks), before, *child, at, cx);
             }
-            cell.track.ascend();
         }
         Machine::EndLate(end) => {
-            cell.track.begin(now, !cell.live, cell.need);
             let (known, value) = (before[*end].t, before[*end].value);
             let mut position = now;
             while cx.ending & known & cell.track.open(position, now) != 0 {
@@ -218,7 +209,6 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                 cell.track.settle(position, now, fresh, 0);
                 position = position.wrapping_sub(1);
             }
-            cell.track.ascend();
         }
         _ => {}
     }

@@ -58,6 +58,9 @@ impl Cell {
     /// The cells that take longer, out of the way of those that do not.
     #[inline(never)]
     fn late_step(&mut self, before: &[Cell], cx: &Context) {
+        if self.track.is_kept() {
+            self.track.begin(cx.now, !self.live, self.need);
+        }
         match &self.machine {
             Machine::Count { .. } | Machine::Slide { .. } => window::step(self, before, cx),
             Machine::Capture(_)
@@ -68,6 +71,7 @@ impl Cell {
             Machine::Chain { .. } => until::step(self, before, cx),
             _ => numbers::step(self, before, cx),
         }
+        self.track.ascend();
         if self.single {
             self.keep_answer(cx.now);
         }

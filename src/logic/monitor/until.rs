@@ -11,7 +11,6 @@ use super::track::Track;
 pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
     let Machine::Chain { first, second } = &cell.machine else { return };
     let track = &mut cell.track;
-    track.begin(cx.now, !cell.live, cell.need);
     for child in std::iter::once(second).chain(first) {
         for (at, ..) in events(before, *child, cx.now) {
             settle(track, before, (*first, *second), at, cx);
@@ -20,7 +19,6 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
     if cx.ending != 0 {
         settle(track, before, (*first, *second), cx.now, cx);
     }
-    track.ascend();
 }
 
 /// Settles position `at` as far as it is known now, and then those before it that depend on it.

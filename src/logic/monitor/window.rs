@@ -22,14 +22,12 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             }
         }
         Machine::Slide { child, width, cut } => {
-            cell.track.begin(cx.now, !cell.live, cell.need);
             for (at, t, f) in events(before, *child, cx.now) {
                 slide(&mut cell.track, cx.now, *width, at, t, f);
             }
             if *cut && cx.ending != 0 {
                 cut_off(&mut cell.track, cx);
             }
-            cell.track.ascend();
         }
         _ => {}
     }

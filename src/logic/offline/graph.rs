@@ -4,9 +4,8 @@
 //! a window over a comparison of one state, as in the monitors.
 
 use super::Recording;
-use crate::base::tick::Tick;
 use crate::logic::formula::{
-    Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
+    Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window, in_time,
 };
 use crate::logic::invalid::Invalid;
 use crate::logic::reach::{Part, children_first};
@@ -147,14 +146,7 @@ impl Graph {
 
     fn number(&mut self, tree: &Tree, id: TermId) -> Result<usize, Invalid> {
         let k = id.0 as usize;
-        let of = |id: &TermId| self.constants[id.0 as usize];
-        let constant = match &tree.terms[k] {
-            Term::Constant(value) => Some(*value),
-            Term::Combine(operation, x, y) => of(x).zip(of(y)).map(|(x, y)| operation.apply(x, y)),
-            Term::Abs(x) => of(x).map(f64::abs),
-            Term::Later(_, x) | Term::AtEnd(x) => of(x),
-            Term::Signal(_) | Term::Window(..) | Term::TimeUntil(_) => None,
-        };
+        let constant = tree.constant(id, |x| self.constants[x.0 as usize]);
         self.constants[k] = constant;
         let slot = match (&tree.terms[k], constant) {
             (_, Some(value)) => Slot::Number(value),
@@ -203,36 +195,28 @@ impl Graph {
         (relation, x, c): (Relation, TermId, f64),
         recording: &Recording<'_>,
     ) -> Result<usize, Invalid> {
-        use Aggregation::{Max, Min};
         use Relation::{AtLeast, AtMost, Greater, Less};
         if let (Some(x), false) = (self.constants[x.0 as usize], self.margins) {
             return Ok(self.push(Slot::Fixed(relation.holds(x, c)), None));
         }
-        let (from, to, x, any) = match (&tree.terms[x.0 as usize], relation) {
-            (Term::Later(by, x), _) => (by.0, Some(by.0), *x, true),
-            (Term::Window(Min, w, x), Less | AtMost) | (Term::Window(Max, w, x), Greater | AtLeast) => {
-                (w.from.0, w.to.map(|to| to.0), *x, true)
-            }
-            (Term::Window(Min, w, x), Greater | AtLeast) | (Term::Window(Max, w, x), Less | AtMost) => {
-                (w.from.0, w.to.map(|to| to.0), *x, false)
-            }
-            (Term::TimeUntil(goal), Less | AtMost | Greater | AtLeast) if !c.is_nan() => {
-                let within = match relation {
-                    Greater => AtMost,
-                    AtLeast => Less,
-                    same => same,
-                };
-                let slot = self.in_time(within, *goal, c, recording)?;
-                let opposite = matches!(relation, Greater | AtLeast);
-                return Ok(if opposite { self.push(Slot::Not(slot), None) } else { slot });
-            }
-            _ => {
-                let (x, c) = (self.of_term(x)?, self.push(Slot::Number(c), None));
-                return Ok(self.push(Slot::Compare(relation, x, c), Some(id)));
-            }
+        let Some((w, x, any)) = tree.within(relation, x) else {
+            return match (&tree.terms[x.0 as usize], relation) {
+                (Term::TimeUntil(goal), Less | AtMost) if !c.is_nan() => {
+                    self.in_time(relation, *goal, c, recording)
+                }
+                (Term::TimeUntil(goal), Greater | AtLeast) if !c.is_nan() => {
+                    let within = if relation == Greater { AtMost } else { Less };
+                    let slot = self.in_time(within, *goal, c, recording)?;
+                    Ok(self.push(Slot::Not(slot), None))
+                }
+                _ => {
+                    let (x, c) = (self.of_term(x)?, self.push(Slot::Number(c), None));
+                    Ok(self.push(Slot::Compare(relation, x, c), Some(id)))
+                }
+            };
         };
         let of = self.against(tree, id, (relation, x, c), recording)?;
-        Ok(self.push(Slot::Window { from, to, of, any }, None))
+        Ok(self.push(Slot::Window { from: w.from.0, to: w.to.map(|to| to.0), of, any }, None))
     }
 
     /// The time until a goal is less than `c` seconds, or at most: finally, within the states that are in time.
@@ -246,20 +230,10 @@ impl Graph {
         if within.holds(f64::INFINITY, c) {
             return Ok(self.push(Slot::Fixed(true), None));
         }
-        // States in time, by bisection.
-        let (mut count, mut beyond) = (0, self.horizon + 1);
-        while count < beyond {
-            let middle = count + (beyond - count) / 2;
-            if within.holds(recording.clock.seconds(Tick(middle)), c) {
-                count = middle + 1;
-            } else {
-                beyond = middle;
-            }
-        }
         let of = self.of(goal)?;
-        let slot = match count {
-            0 => Slot::Fixed(false),
-            count => Slot::Window { from: 0, to: Some(count - 1), of, any: true },
+        let slot = match in_time(within, c, recording.clock, self.horizon) {
+            None => Slot::Fixed(false),
+            to => Slot::Window { from: 0, to, of, any: true },
         };
         Ok(self.push(slot, None))
     }

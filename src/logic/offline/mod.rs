@@ -14,7 +14,7 @@ use super::reach::Part;
 use crate::base::tick::{Clock, Tick};
 pub(super) use graph::Slot;
 use graph::{Graph, graph};
-pub(super) use tracks::{FALSE, Next, OPEN, TRUE, turned};
+pub(super) use tracks::{FALSE, Next, OPEN, Slide, TRUE, backward, turned};
 use tracks::{Track, tracks};
 
 /// A recorded trial. States are counted from 0.

@@ -5,6 +5,7 @@ use super::graph::{Graph, Slot};
 use crate::base::tick::Tick;
 use crate::logic::formula::{Aggregation, Operation, bracket};
 use std::collections::VecDeque;
+use std::ops::Range;
 
 /// A truth: false.
 pub(in crate::logic) const FALSE: u8 = 0;
@@ -96,6 +97,51 @@ impl Next {
     }
 }
 
+/// Values from the last state to the first, in order of states.
+pub(in crate::logic) fn backward<T>(states: Range<u64>, of: impl FnMut(u64) -> T) -> Vec<T> {
+    let mut values: Vec<T> = states.rev().map(of).collect();
+    values.reverse();
+    values
+}
+
+/// The smallest or largest number of a window that moves back (a monotone queue); of equal ones the first.
+pub(in crate::logic) struct Slide {
+    queue: VecDeque<(u64, f64)>,
+    reached: u64,
+    operation: Operation,
+}
+
+impl Slide {
+    /// Behind the last state seen.
+    pub(in crate::logic) fn new(seen: u64, operation: Operation) -> Self {
+        Self { queue: VecDeque::new(), reached: seen, operation }
+    }
+
+    /// That of the states `first ..= last`; what is no number does not count, and NaN is none.
+    pub(in crate::logic) fn of(
+        &mut self,
+        (first, last): (u64, u64),
+        mut number: impl FnMut(u64) -> f64,
+    ) -> f64 {
+        while self.reached > first {
+            self.reached -= 1;
+            let next = number(self.reached);
+            if next.is_nan() {
+                continue;
+            }
+            let wins = |later: f64| self.operation.apply(next, later).to_bits() == next.to_bits();
+            while self.queue.front().is_some_and(|&(_, later)| wins(later)) {
+                self.queue.pop_front();
+            }
+            self.queue.push_front((self.reached, next));
+        }
+        while self.queue.back().is_some_and(|&(k, _)| k > last) {
+            self.queue.pop_back();
+        }
+        self.queue.back().map_or(f64::NAN, |&(_, number)| number)
+    }
+}
+
 /// The tracks of all slots; empty ones, in which all is open, where there is no time or no room for them.
 pub(super) fn tracks(graph: &Graph, recording: &Recording<'_>) -> Vec<Track> {
     let seen = recording.seen;
@@ -110,49 +156,11 @@ pub(super) fn tracks(graph: &Graph, recording: &Recording<'_>) -> Vec<Track> {
             tracks.push(empty.clone());
             continue;
         };
-        let mut track = Track { from: range.0, unseen: unseen(slot, &tracks, recording), ..empty.clone() };
         let work = Work { graph, tracks: &tracks, recording, lo: range.0, end: range.0 + states(&range) };
-        work.fill(slot, &mut track);
+        let track = work.of(slot);
         tracks.push(track);
     }
     if given_up { vec![empty; graph.slots.len()] } else { tracks }
-}
-
-/// A slot at a state that was not seen, where all that was not seen is alike.
-fn unseen(slot: &Slot, tracks: &[Track], recording: &Recording<'_>) -> (u8, Option<f64>) {
-    let of = |slot: &usize| tracks[*slot].unseen;
-    let number = |value: Option<f64>| (OPEN, value);
-    match slot {
-        Slot::Fixed(value) => (truth(Some(*value)), None),
-        Slot::Atom(_) | Slot::Signal(_) | Slot::Aggregate { .. } => (OPEN, None),
-        Slot::Compare(relation, x, y) => {
-            (truth(of(x).1.zip(of(y).1).map(|(x, y)| relation.holds(x, y))), None)
-        }
-        Slot::Not(x) => (turned(of(x).0, false), None),
-        Slot::Join { parts, any } => (join(parts.iter().map(|x| of(x).0), *any), None),
-        Slot::Window { of: x, .. } => (of(x).0, None),
-        Slot::Until { from, to, first, second, weak, value } => {
-            let (p, q) = (turned(of(&first.0).0, first.1), turned(of(&second.0).0, second.1));
-            let mut reached = if *weak { q.max(p) } else { q };
-            if *to != Some(*from) {
-                reached = q.max(p.min(reached));
-            }
-            if *from > 0 {
-                reached = p.min(reached);
-            }
-            (turned(reached, *value), None)
-        }
-        Slot::Number(value) => number(Some(*value)),
-        Slot::Combine(operation, x, y) => number(of(x).1.zip(of(y).1).map(|(x, y)| operation.apply(x, y))),
-        Slot::Abs(x) => number(of(x).1.map(f64::abs)),
-        Slot::Later(_, x) => number(of(x).1),
-        Slot::AtEnd(x) => number(tracks[*x].number(recording.horizon.0)),
-        Slot::Time(x) => number(match of(x).0 {
-            FALSE => Some(f64::INFINITY),
-            TRUE => Some(0.0),
-            _ => None,
-        }),
-    }
 }
 
 /// Any or all of some truths.
@@ -183,68 +191,69 @@ impl Work<'_> {
         self.tracks[slot].number(at)
     }
 
+    fn pair(&self, x: usize, y: usize, at: u64) -> Option<(f64, f64)> {
+        self.number(x, at).zip(self.number(y, at))
+    }
+
     fn next(&self, slot: usize, as_it_is: bool) -> Next {
         Next::new(self.recording.seen, turned(self.tracks[slot].unseen.0, as_it_is))
     }
 
-    fn fill(&self, slot: &Slot, track: &mut Track) {
-        let states = self.lo..self.end;
+    /// The values of a slot. All states that were not seen are as the first of them is.
+    fn of(&self, slot: &Slot) -> Track {
+        let is_seen = |k: u64| k < self.recording.seen;
         match slot {
-            Slot::Fixed(value) => track.truths = states.map(|_| truth(Some(*value))).collect(),
-            Slot::Atom(atom) => {
-                track.truths = states.map(|k| truth(Some((self.recording.atoms)(*atom, k)))).collect();
-            }
+            Slot::Fixed(value) => self.truths(|_| truth(Some(*value))),
+            Slot::Atom(atom) => self.truths(|k| truth(is_seen(k).then(|| (self.recording.atoms)(*atom, k)))),
             Slot::Compare(relation, x, y) => {
-                let compare =
-                    |k| truth(self.number(*x, k).zip(self.number(*y, k)).map(|(x, y)| relation.holds(x, y)));
-                track.truths = states.map(compare).collect();
+                self.truths(|k| truth(self.pair(*x, *y, k).map(|(x, y)| relation.holds(x, y))))
             }
-            Slot::Not(x) => track.truths = states.map(|k| turned(self.truth(*x, k), false)).collect(),
-            Slot::Join { parts, any } => {
-                track.truths = states.map(|k| join(parts.iter().map(|x| self.truth(*x, k)), *any)).collect();
+            Slot::Not(x) => self.truths(|k| turned(self.truth(*x, k), false)),
+            Slot::Join { parts, any } => self.truths(|k| join(parts.iter().map(|x| self.truth(*x, k)), *any)),
+            Slot::Window { from, to, of, any } => self.window(*from, *to, *of, *any),
+            Slot::Until { from, to, first, second, weak, value } => {
+                self.until((*from, *to), *first, *second, (*weak, *value))
             }
-            Slot::Window { from, to, of, any } => track.truths = self.window(*from, *to, *of, *any),
-            Slot::Until { .. } => track.truths = self.until(slot),
-            Slot::Number(value) => track.numbers = states.map(|_| Some(*value)).collect(),
+            Slot::Number(value) => self.numbers(|_| Some(*value)),
             Slot::Signal(signal) => {
-                track.numbers = states.map(|k| Some((self.recording.signals)(*signal, k))).collect();
+                self.numbers(|k| is_seen(k).then(|| (self.recording.signals)(*signal, k)))
             }
             Slot::Combine(operation, x, y) => {
-                let combine =
-                    |k| self.number(*x, k).zip(self.number(*y, k)).map(|(x, y)| operation.apply(x, y));
-                track.numbers = states.map(combine).collect();
+                self.numbers(|k| self.pair(*x, *y, k).map(|(x, y)| operation.apply(x, y)))
             }
-            Slot::Abs(x) => track.numbers = states.map(|k| self.number(*x, k).map(f64::abs)).collect(),
-            Slot::Later(by, x) => {
-                track.numbers = states.map(|k| self.number(*x, k.saturating_add(*by))).collect();
-            }
-            Slot::AtEnd(x) => {
-                let last = self.number(*x, self.recording.horizon.0);
-                track.numbers = states.map(|_| last).collect();
-            }
-            Slot::Time(goal) => track.numbers = self.times(*goal),
-            Slot::Aggregate { aggregation, from, to, of } => {
-                track.numbers = match aggregation {
-                    Aggregation::Min | Aggregation::First => self.extremes(*from, *to, *of, Operation::Min),
-                    Aggregation::Max => self.extremes(*from, *to, *of, Operation::Max),
-                    Aggregation::Sum => self.sums(*from, *to, *of, false),
-                    Aggregation::Mean => self.sums(*from, *to, *of, true),
-                }
-            }
+            Slot::Abs(x) => self.numbers(|k| self.number(*x, k).map(f64::abs)),
+            Slot::Later(by, x) => self.numbers(|k| self.number(*x, k.saturating_add(*by))),
+            Slot::AtEnd(x) => self.numbers(|_| self.number(*x, self.recording.horizon.0)),
+            Slot::Time(goal) => self.times(*goal),
+            Slot::Aggregate { aggregation, from, to, of } => match aggregation {
+                Aggregation::Min | Aggregation::First => self.extremes(*from, *to, *of, Operation::Min),
+                Aggregation::Max => self.extremes(*from, *to, *of, Operation::Max),
+                Aggregation::Sum => self.sums(*from, *to, *of, false),
+                Aggregation::Mean => self.sums(*from, *to, *of, true),
+            },
         }
     }
 
-    /// Values from the last state to the first, in order of states.
-    fn backward<T>(&self, mut of: impl FnMut(u64) -> T) -> Vec<T> {
-        let mut values: Vec<T> = (self.lo..self.end).rev().map(&mut of).collect();
-        values.reverse();
-        values
+    /// Truths from behind the last state seen to the first state.
+    fn truths(&self, mut of: impl FnMut(u64) -> u8) -> Track {
+        let Recording { seen, .. } = *self.recording;
+        let unseen = (of(seen), None);
+        let truths = backward(self.lo..self.end, of);
+        Track { from: self.lo, truths, numbers: Vec::new(), unseen, seen }
     }
 
-    fn window(&self, from: u64, to: Option<u64>, of: usize, any: bool) -> Vec<u8> {
+    /// Numbers from behind the last state seen to the first state.
+    fn numbers(&self, mut of: impl FnMut(u64) -> Option<f64>) -> Track {
+        let Recording { seen, .. } = *self.recording;
+        let unseen = (OPEN, of(seen));
+        let numbers = backward(self.lo..self.end, of);
+        Track { from: self.lo, truths: Vec::new(), numbers, unseen, seen }
+    }
+
+    fn window(&self, from: u64, to: Option<u64>, of: usize, any: bool) -> Track {
         // All hold where none fails.
         let mut next = self.next(of, any);
-        self.backward(|at| {
+        self.truths(|at| {
             let (first, last) = (at.saturating_add(from), self.graph.end(at, to));
             next.move_to(first, |k| turned(self.truth(of, k), any));
             let found = [TRUE, OPEN].into_iter().find(|truth| next.first(first, *truth) <= last);
@@ -254,11 +263,16 @@ impl Work<'_> {
 
     /// At most so true: the second somewhere in the window and the first before. For each of "true" and "not false", the
     /// first state that fails and the first that reaches say it.
-    fn until(&self, slot: &Slot) -> Vec<u8> {
-        let Slot::Until { from, to, first, second, weak, value } = slot else { return Vec::new() };
+    fn until(
+        &self,
+        (from, to): (u64, Option<u64>),
+        first: (usize, bool),
+        second: (usize, bool),
+        (weak, value): (bool, bool),
+    ) -> Track {
         let (mut hold, mut goal) = (self.next(first.0, first.1), self.next(second.0, second.1));
-        self.backward(|at| {
-            let (begin, last) = (at.saturating_add(*from), self.graph.end(at, *to));
+        self.truths(|at| {
+            let (begin, last) = (at.saturating_add(from), self.graph.end(at, to));
             hold.move_to(at, |k| turned(self.truth(first.0, k), first.1));
             goal.move_to(begin, |k| turned(self.truth(second.0, k), second.1));
             let fails = hold.first(at, FALSE);
@@ -266,7 +280,7 @@ impl Work<'_> {
             let reached = goal.first(begin, TRUE);
             let perhaps = reached.min(goal.first(begin, OPEN));
             let so =
-                |reached: u64, fails: u64| (reached <= last && reached <= fails) || (*weak && fails > last);
+                |reached: u64, fails: u64| (reached <= last && reached <= fails) || (weak && fails > last);
             let truth = if so(reached, unsure) {
                 TRUE
             } else if so(perhaps, fails) {
@@ -274,14 +288,14 @@ impl Work<'_> {
             } else {
                 FALSE
             };
-            turned(truth, *value)
+            turned(truth, value)
         })
     }
 
-    fn times(&self, goal: usize) -> Vec<Option<f64>> {
+    fn times(&self, goal: usize) -> Track {
         let mut next = self.next(goal, true);
         let horizon = self.recording.horizon.0;
-        self.backward(|at| {
+        self.numbers(|at| {
             next.move_to(at, |k| self.truth(goal, k));
             let (reached, open) = (next.first(at, TRUE), next.first(at, OPEN));
             if reached.min(open) > horizon {
@@ -292,46 +306,35 @@ impl Work<'_> {
         })
     }
 
-    /// Smallest or largest numbers of a sliding window (a monotone queue). What is no number wins, of equal numbers the
-    /// first.
-    fn extremes(&self, from: u64, to: Option<u64>, of: usize, operation: Operation) -> Vec<Option<f64>> {
-        let mut queue: VecDeque<(u64, f64)> = VecDeque::new();
+    /// Smallest or largest numbers of a sliding window. What is no number wins.
+    fn extremes(&self, from: u64, to: Option<u64>, of: usize, operation: Operation) -> Track {
+        let mut slide = Slide::new(self.recording.seen, operation);
         let (mut open, mut nothing) = (NEVER, NEVER);
-        let mut reached = self.recording.seen;
-        self.backward(|at| {
+        self.numbers(|at| {
             let (first, last) = (at.saturating_add(from), self.graph.end(at, to));
-            while reached > first {
-                reached -= 1;
-                match self.number(of, reached) {
-                    None => open = reached,
-                    Some(value) if value.is_nan() => nothing = reached,
-                    Some(value) => {
-                        while queue.front().is_some_and(|&(_, later)| {
-                            operation.apply(value, later).to_bits() == value.to_bits()
-                        }) {
-                            queue.pop_front();
-                        }
-                        queue.push_front((reached, value));
-                    }
+            let best = slide.of((first, last), |k| {
+                let number = self.number(of, k);
+                match number {
+                    None => open = k,
+                    Some(value) if value.is_nan() => nothing = k,
+                    Some(_) => {}
                 }
-            }
-            while queue.back().is_some_and(|&(k, _)| k > last) {
-                queue.pop_back();
-            }
+                number.unwrap_or(f64::NAN)
+            });
             if last >= self.recording.seen || open <= last {
                 None
             } else if nothing <= last {
                 Some(f64::NAN)
             } else {
-                queue.back().map(|&(_, value)| value)
+                (!best.is_nan()).then_some(best)
             }
         })
     }
 
     /// Sums are added up state by state, as the monitors do it.
-    fn sums(&self, from: u64, to: Option<u64>, of: usize, mean: bool) -> Vec<Option<f64>> {
+    fn sums(&self, from: u64, to: Option<u64>, of: usize, mean: bool) -> Track {
         let (mut work, mut given_up) = (0u64, false);
-        self.backward(|at| {
+        self.numbers(|at| {
             let (first, last) = (at.saturating_add(from), self.graph.end(at, to));
             if last >= self.recording.seen || first > last || given_up {
                 return None;

@@ -3,9 +3,9 @@
 use super::Reading;
 use super::moment::Moment;
 use super::number::Number;
-use super::present::Present;
 use super::track::Known;
 use super::truth::{Ref, Step, Truth};
+use crate::logic::present::Present;
 
 /// Most pieces that are stored; a trial that needs more is unresolved.
 const MOST_PIECES: usize = 1 << 20;
@@ -139,7 +139,11 @@ impl Cells {
             let truth = |k: usize, at: Moment| truths[k] = truths[k].min(at);
             let number = |k: usize, at: Moment| numbers[k] = numbers[k].min(at);
             match *cell {
-                Cell::Truth(k) => self.truths[k].needs(truth, number),
+                Cell::Truth(k) => {
+                    if let Some(open) = self.truths[k].track.first_open() {
+                        self.truths[k].machine.needs(open, truth, number);
+                    }
+                }
                 Cell::Number(k) => self.numbers[k].needs(truth, number),
             }
         }

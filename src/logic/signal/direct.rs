@@ -5,10 +5,10 @@
 use super::Reading;
 use super::integral::Integral;
 use super::moment::{Moment, Scale};
-use super::present::Present;
 use crate::base::instant::Instant;
 use crate::logic::flat::Sort;
 use crate::logic::formula::{Aggregation, Operation};
+use crate::logic::present::Present;
 
 /// A truth of the present state, perhaps negated.
 #[derive(Clone, Copy, Debug)]

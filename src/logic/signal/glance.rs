@@ -1,10 +1,10 @@
 //! Short questions over few states: what each state is, known beforehand, and the verdict by the monitor's own rule.
 
 use super::direct::{Direct, Question, Stay};
-use super::present::Present;
 use super::{SignalMonitor, Way};
 use crate::base::instant::Instant;
 use crate::logic::flat::Sort;
+use crate::logic::present::Present;
 
 /// A monitor that is one until over present states, by state and not by trial.
 #[derive(Clone, Debug)]

@@ -13,7 +13,6 @@ mod integral;
 mod moment;
 mod number;
 mod plan;
-mod present;
 mod question;
 mod reading;
 pub mod robustness;
@@ -24,6 +23,7 @@ mod until;
 
 use super::formula::{NodeId, TermId, Tree};
 use super::invalid::Invalid;
+use super::present::Present;
 use super::reach::Part;
 use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
@@ -32,7 +32,6 @@ use direct::Stay;
 pub use glance::Glance;
 use moment::{Moment, Scale};
 use plan::plan;
-use present::Present;
 use question::{Watched, Way};
 pub use reading::Reading;
 

@@ -13,13 +13,13 @@ pub(super) struct Stream {
     pub(super) end: Moment,
     /// Moments before this one are known.
     pub(super) known: Moment,
-    /// `known` and the last piece before the present step, and how many pieces it added.
-    mark: (Moment, usize),
+    /// `known` before the present step.
+    mark: Moment,
 }
 
 impl Stream {
     pub(super) fn new(first: Moment, end: Moment) -> Self {
-        Self { pieces: VecDeque::with_capacity(16), first, end, known: first, mark: (first, 0) }
+        Self { pieces: VecDeque::with_capacity(16), first, end, known: first, mark: first }
     }
 
     pub(super) fn clear(&mut self) {
@@ -34,7 +34,6 @@ impl Stream {
         if to > self.known {
             if self.pieces.back().is_none_or(|last| last.1.to_bits() != value.to_bits()) {
                 self.pieces.push_back((self.known, value));
-                self.mark.1 += 1;
             }
             self.known = to;
         }
@@ -61,16 +60,30 @@ impl Stream {
         (end, self.pieces.get(k).map_or(f64::NAN, |piece| piece.1))
     }
 
+    /// Pieces from the one around a known moment on: first moment, first moment after it, value.
+    pub(super) fn pieces(&self, at: Moment) -> impl Iterator<Item = (Moment, Moment, f64)> {
+        (self.index(at)..self.pieces.len()).filter(move |_| at < self.known).map(|k| {
+            let (start, value) = self.pieces[k];
+            (start, self.pieces.get(k + 1).map_or(self.known, |next| next.0), value)
+        })
+    }
+
     /// A step begins.
     pub(super) fn mark(&mut self) {
-        self.mark = (self.known, 0);
+        self.mark = self.known;
     }
 
     /// Forgets what the present step found.
     pub(super) fn take_back(&mut self) {
-        self.known = self.mark.0;
-        self.pieces.truncate(self.pieces.len() - self.mark.1);
-        self.mark.1 = 0;
+        self.cut(self.mark);
+    }
+
+    /// Forgets everything from a moment on.
+    pub(super) fn cut(&mut self, from: Moment) {
+        while self.pieces.back().is_some_and(|piece| piece.0 >= from) {
+            self.pieces.pop_back();
+        }
+        self.known = self.known.min(from);
     }
 
     /// The first moment that is asked about and not known.

@@ -6,9 +6,9 @@
 use super::average::Average;
 use super::moment::{Moment, instant};
 use super::number::Number;
-use super::present::Present;
 use super::track::{Fresh, Known, Track};
 use crate::logic::formula::Relation;
+use crate::logic::present::Present;
 
 /// An operand, perhaps negated.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +64,33 @@ pub(super) enum Machine {
     Compare(Relation, usize, usize),
     /// Comparison of a time average with a constant.
     Average(Average),
+}
+
+impl Machine {
+    /// Tells from which moment on the operands are still needed, if what follows from them is open from one on.
+    pub(super) fn needs(
+        &self,
+        open: Moment,
+        mut truth: impl FnMut(usize, Moment),
+        mut number: impl FnMut(usize, Moment),
+    ) {
+        match self {
+            Self::Fixed(_) | Self::Alike(..) | Self::Present(_) => {}
+            Self::Any(operands) => operands.iter().for_each(|x| truth(x.cell, open)),
+            Self::Reach(Seen::Within { from, .. }, x) => truth(x.cell, open + from),
+            Self::Reach(Seen::Soon { .. }, x) => truth(x.cell, open),
+            Self::Until { from, first, second, .. } => {
+                truth(second.cell, open + from);
+                truth(first.cell, open);
+            }
+            Self::Spread(x) => truth(x.cell, 0),
+            Self::Compare(_, x, y) => {
+                number(*x, open);
+                number(*y, open);
+            }
+            Self::Average(average) => number(average.of, instant(open) + average.from),
+        }
+    }
 }
 
 /// A truth over time.
@@ -160,27 +187,6 @@ impl Truth {
     pub(super) fn take_back(&mut self) {
         self.track.take_back();
         self.cursor.0 = self.cursor.1;
-    }
-
-    /// Tells from which moment on the operands are still needed.
-    pub(super) fn needs(&self, mut truth: impl FnMut(usize, Moment), mut number: impl FnMut(usize, Moment)) {
-        let Some(open) = self.track.first_open() else { return };
-        match &self.machine {
-            Machine::Fixed(_) | Machine::Alike(..) | Machine::Present(_) => {}
-            Machine::Any(operands) => operands.iter().for_each(|x| truth(x.cell, open)),
-            Machine::Reach(Seen::Within { from, .. }, x) => truth(x.cell, open + from),
-            Machine::Reach(Seen::Soon { .. }, x) => truth(x.cell, open),
-            Machine::Until { from, first, second, .. } => {
-                truth(second.cell, open + from);
-                truth(first.cell, open);
-            }
-            Machine::Spread(x) => truth(x.cell, 0),
-            Machine::Compare(_, x, y) => {
-                number(*x, open);
-                number(*y, open);
-            }
-            Machine::Average(average) => number(average.of, instant(open) + average.from),
-        }
     }
 }
 

@@ -132,11 +132,6 @@ impl GoalField {
         }
     }
 
-    /// The goal point of the field, m.
-    pub fn goal(&self) -> Vec2 {
-        self.goal
-    }
-
     /// Length of the way from a place to `goal`, m, and its direction (length 1; zero at the goal); `None` where no way leads
     /// there. `goal` is a point near that of the field and in sight of it. Continuous in the place.
     pub fn way(&self, grid: &ClearanceGrid, from: Vec2, goal: Vec2) -> Option<Way> {

@@ -72,11 +72,6 @@ impl Terrain {
     pub fn planner(&self) -> &Planner {
         &self.planner
     }
-
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
 }
 
 /// The terrains of a call, each made once.

@@ -6,7 +6,6 @@
 
 mod alternatives;
 mod field;
-pub mod figures;
 mod free;
 mod graph;
 mod nearest;

@@ -1,6 +1,7 @@
 //! Roadmaps and shortest paths against oracles: many places of an edge, lengths of all pairs.
 
 mod classes;
+mod figures;
 mod measurements;
 
 use super::nearest::VertexGrid;

@@ -96,12 +96,6 @@ impl Each {
         self.pending.is_empty()
     }
 
-    /// Successes, failures and unresolved trials of an arm.
-    pub fn counts(&self, arm: usize) -> (u64, u64, u64) {
-        let (counts, unresolved) = self.arms[arm];
-        (counts.successes, counts.failures - unresolved, unresolved)
-    }
-
     /// The lowest and highest share of successes that an arm can have.
     fn shares(&self, arm: usize) -> (f64, f64) {
         let (counts, unresolved) = self.arms[arm];

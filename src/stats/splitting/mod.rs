@@ -117,11 +117,6 @@ pub trait Scheme {
     /// Takes what the wanted paths came to, in their order.
     fn feed(&mut self, flights: Vec<Flight>);
 
-    /// Whether it is finished.
-    fn finished(&self) -> bool {
-        self.wanted().is_empty()
-    }
-
     /// The estimate, unbiased once finished: 0 where no path reached the event.
     fn estimate(&self) -> f64;
 

@@ -1,6 +1,6 @@
 //! Cells of formulas.
 
-use super::{Builder, Made, NowKey, Watch, later};
+use super::{Builder, Made, NowKey, Span, Watch, later};
 use crate::base::tick::Tick;
 use crate::logic::formula::{Node, NodeId, Window};
 use crate::logic::invalid::Invalid;
@@ -14,29 +14,27 @@ struct Side<'a> {
     negated: bool,
 }
 
-/// A window below the positions `lo ..= hi`.
+/// A window below some positions.
 pub(super) struct Stretch {
-    /// First and last state it covers.
-    pub(super) lo: u64,
-    pub(super) hi: u64,
+    /// The states it covers.
+    pub(super) span: Span,
     /// States after its first one; `None` up to the horizon.
     pub(super) width: Option<u64>,
 }
 
 impl Builder<'_> {
     /// The states of a window below `lo ..= hi`.
-    pub(super) fn stretch(&self, window: Window, lo: u64, hi: u64) -> Stretch {
-        let from = window.from.0;
+    pub(super) fn stretch(&self, window: Window, (lo, hi): Span) -> Stretch {
+        let (lo, end) = (lo + window.from.0, self.horizon);
         match window.to {
-            Some(to) => Stretch { lo: lo + from, hi: hi + to.0, width: Some(to.0 - from) },
-            None if lo + from >= self.horizon => Stretch { lo: lo + from, hi: self.horizon, width: Some(0) },
-            None => Stretch { lo: lo + from, hi: self.horizon, width: None },
+            Some(to) => Stretch { span: (lo, hi + to.0), width: Some(to.0 - window.from.0) },
+            None => Stretch { span: (lo, end), width: (lo >= end).then_some(0) },
         }
     }
 
     /// The formula `id`, asked about at the positions `lo ..= hi`.
-    pub(super) fn formula(&mut self, id: NodeId, lo: u64, hi: u64) -> Result<Made<bool>, Invalid> {
-        if let Some(&made) = self.formulas.get(&(id.0, lo, hi)) {
+    pub(super) fn formula(&mut self, id: NodeId, (lo, hi): Span) -> Result<Made<bool>, Invalid> {
+        if let Some(&made) = self.formulas.get(&(id.0, (lo, hi))) {
             return Ok(made);
         }
         self.check_size()?;
@@ -46,75 +44,52 @@ impl Builder<'_> {
             Node::Atom(atom) => {
                 Made::Of(self.present(NowKey::Atom(atom.0), Machine::Atom(atom.0 as usize), false))
             }
-            Node::Compare(relation, x, y) => self.compare(*relation, *x, *y, lo, hi)?,
-            Node::Not(x) => !self.formula(*x, lo, hi)?,
-            Node::Or(all) => {
+            Node::Compare(relation, x, y) => self.compare(*relation, *x, *y, (lo, hi))?,
+            Node::Not(x) => !self.formula(*x, (lo, hi))?,
+            // All hold where not any fails, and so on.
+            node @ (Node::Or(all) | Node::And(all)) => {
+                let turned = matches!(node, Node::And(_));
                 let mut parts = Vec::with_capacity(all.len());
                 for part in all {
-                    parts.push(self.formula(*part, lo, hi)?);
+                    parts.push(self.formula(*part, (lo, hi))?.not_if(turned));
                 }
-                if self.antecedent(id).is_some() {
-                    self.watch(id, !parts[0], lo, hi);
+                if tree.antecedent(id).is_some() {
+                    self.watch(id, !parts[0], (lo, hi));
                 }
-                self.any(parts, lo, hi)
+                self.any(parts, (lo, hi)).not_if(turned)
             }
-            Node::And(all) => {
-                let mut parts = Vec::with_capacity(all.len());
-                for part in all {
-                    parts.push(!self.formula(*part, lo, hi)?);
-                }
-                !self.any(parts, lo, hi)
+            node @ (Node::Finally(w, x) | Node::Globally(w, x)) => {
+                let turned = matches!(node, Node::Globally(..));
+                let below = self.stretch(*w, (lo, hi));
+                let child = self.formula(*x, below.span)?.not_if(turned);
+                self.some_state(child, w.from, below.width, (lo, hi)).not_if(turned)
             }
-            Node::Finally(w, x) => {
-                let below = self.stretch(*w, lo, hi);
-                let child = self.formula(*x, below.lo, below.hi)?;
-                self.some_state(child, w.from, below.width, lo, hi)
-            }
-            Node::Globally(w, x) => {
-                let below = self.stretch(*w, lo, hi);
-                let child = self.formula(*x, below.lo, below.hi)?;
-                !self.some_state(!child, w.from, below.width, lo, hi)
-            }
-            Node::Until(w, p, q) => {
-                let (p, q) = ([(*p, false)], [(*q, false)]);
-                self.until(
-                    *w,
-                    &p,
-                    Side { any: &p, negated: false },
-                    Side { any: &q, negated: false },
-                    lo,
-                    hi,
-                )?
-            }
-            Node::Release(w, p, q) => {
-                let (p, q) = ([(*p, true)], [(*q, true)]);
-                !self.until(
-                    *w,
-                    &p,
-                    Side { any: &p, negated: false },
-                    Side { any: &q, negated: false },
-                    lo,
-                    hi,
-                )?
+            node @ (Node::Until(w, p, q) | Node::Release(w, p, q)) => {
+                let turned = matches!(node, Node::Release(..));
+                let (p, q) = ([(*p, turned)], [(*q, turned)]);
+                let (first, second) = (Side { any: &p, negated: false }, Side { any: &q, negated: false });
+                let (from, width) = (w.from.0, self.stretch(*w, (lo, hi)).width);
+                let then = self.until_here(width, first, second, (lo + from, hi + from))?;
+                self.guarded(from, first, then, (lo, hi))?.not_if(turned)
             }
             // p W q is not (!q U (!p & !q)): it fails at the first state without p before any with q.
             Node::WeakUntil(w, p, q) => {
                 let (not_q, both) = ([(*q, true)], [(*p, false), (*q, false)]);
                 let (first, second) =
                     (Side { any: &not_q, negated: false }, Side { any: &both, negated: true });
-                let below = self.stretch(*w, lo, hi);
+                let below = self.stretch(*w, (lo, hi));
                 let from = w.from.0;
-                let weak = !self.until_here(below.width, first, second, lo + from, hi + from)?;
+                let weak = !self.until_here(below.width, first, second, (lo + from, hi + from))?;
                 let p = [(*p, false)];
-                self.guarded(from, Side { any: &p, negated: false }, weak, lo, hi)?
+                self.guarded(from, Side { any: &p, negated: false }, weak, (lo, hi))?
             }
         };
-        self.formulas.insert((id.0, lo, hi), made);
+        self.formulas.insert((id.0, (lo, hi)), made);
         Ok(made)
     }
 
     /// Notes whether the antecedent of an implication is ever true.
-    fn watch(&mut self, id: NodeId, antecedent: Made<bool>, lo: u64, hi: u64) {
+    fn watch(&mut self, id: NodeId, antecedent: Made<bool>, (lo, hi): Span) {
         let watch = match antecedent {
             Made::Constant(value) => {
                 if let Some(watched) = self.watches.get_mut(&id.0) {
@@ -136,18 +111,19 @@ impl Builder<'_> {
         }
     }
 
-    /// The answer at position `at` to a formula that is asked about there alone.
+    /// The answer at position `at` to what is asked about there alone.
     pub(super) fn held(&mut self, child: Ref, at: u64) -> Ref {
         if child.place != Place::Now {
             return child;
         }
         self.touch(child, (at, at));
-        let at = at + child.ahead;
-        self.answer(Machine::Capture(child), (at, at), 0, false)
+        let (at, numeric) = (at + child.ahead, self.facts[child.cell].numeric);
+        let machine = if numeric { Machine::CaptureNumber(child) } else { Machine::Capture(child) };
+        self.answer(machine, (at, at), 0, numeric)
     }
 
     /// Any of these at the positions `lo ..= hi`.
-    fn any(&mut self, parts: Vec<Made<bool>>, lo: u64, hi: u64) -> Made<bool> {
+    fn any(&mut self, parts: Vec<Made<bool>>, (lo, hi): Span) -> Made<bool> {
         // Those of one state are one.
         let mut present: BTreeMap<u64, Vec<(usize, bool)>> = BTreeMap::new();
         let mut children: Vec<Ref> = Vec::new();
@@ -181,11 +157,11 @@ impl Builder<'_> {
                 let held = children.into_iter().map(|child| self.held(child, lo)).collect();
                 Made::Of(self.answer(Machine::AnyHeld(held), (lo, lo), self.horizon, false))
             }
-            _ => Made::Of(self.any_late(&children, lo, hi, false)),
+            _ => Made::Of(self.any_late(&children, (lo, hi), false)),
         }
     }
 
-    fn any_late(&mut self, children: &[Ref], lo: u64, hi: u64, cut: bool) -> Ref {
+    fn any_late(&mut self, children: &[Ref], (lo, hi): Span, cut: bool) -> Ref {
         let ahead = children.iter().map(|child| child.ahead).min().unwrap_or(0);
         let (lo, hi) = (lo + ahead, hi + ahead);
         let children: Box<[Ref]> =
@@ -205,8 +181,7 @@ impl Builder<'_> {
         child: Made<bool>,
         from: Tick,
         width: Option<u64>,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Made<bool> {
         let (child, width) = match (child, width) {
             (Made::Constant(value), _) => return Made::Constant(value),
@@ -241,35 +216,40 @@ impl Builder<'_> {
                 let latency = width.saturating_add(delay);
                 self.late(Machine::Slide { child, width, cut }, (lo, hi), latency, true, false)
             }
-            Some(width) => self.doubled(child, width, (lo, hi), cut),
+            // It settles out of order.
+            Some(width) => {
+                self.doubled(child, width, (lo, hi), |all, halves, range| all.any_late(&halves, range, cut))
+            }
         };
         Made::Of(later(cell, ahead))
     }
 
-    /// Finally over a child that settles out of order: windows of 2, 4, 8, … states, each of two of the
-    /// last size, so that a change costs the logarithm of the width.
-    fn doubled(&mut self, child: Ref, width: u64, (lo, hi): (u64, u64), cut: bool) -> Ref {
+    /// Something over windows of 2, 4, 8, … states, each of two of the last size, so that a change costs the logarithm of
+    /// the width.
+    pub(super) fn doubled(
+        &mut self,
+        child: Ref,
+        width: u64,
+        (lo, hi): Span,
+        mut join: impl FnMut(&mut Self, [Ref; 2], Span) -> Ref,
+    ) -> Ref {
         let states = width + 1;
         let (mut size, mut half) = (1, child);
         while size * 2 <= states {
-            half = self.any_late(&[half, later(half, size)], lo, hi + states - 2 * size, cut);
+            half = join(self, [half, later(half, size)], (lo, hi + states - 2 * size));
             size *= 2;
         }
-        if size == states { half } else { self.any_late(&[half, later(half, states - size)], lo, hi, cut) }
+        if size == states { half } else { join(self, [half, later(half, states - size)], (lo, hi)) }
     }
 
-    fn side(&mut self, side: Side, lo: u64, hi: u64) -> Result<Made<bool>, Invalid> {
-        let mut parts = Vec::with_capacity(side.any.len());
-        for &(part, negated) in side.any {
-            let made = self.formula(part, lo, hi)?;
-            parts.push(if negated { !made } else { made });
-        }
-        let any = self.any(parts, lo, hi);
-        Ok(if side.negated { !any } else { any })
+    fn side(&mut self, side: Side, at: Span) -> Result<Made<bool>, Invalid> {
+        let parts = side.any.iter().map(|&(part, negated)| Ok(self.formula(part, at)?.not_if(negated)));
+        let parts = parts.collect::<Result<Vec<_>, Invalid>>()?;
+        Ok(self.any(parts, at).not_if(side.negated))
     }
 
-    fn both(&mut self, x: Made<bool>, y: Made<bool>, lo: u64, hi: u64) -> Made<bool> {
-        !self.any(vec![!x, !y], lo, hi)
+    fn both(&mut self, x: Made<bool>, y: Made<bool>, (lo, hi): Span) -> Made<bool> {
+        !self.any(vec![!x, !y], (lo, hi))
     }
 
     /// `then`, and the guard at every state of the first `states`.
@@ -278,31 +258,15 @@ impl Builder<'_> {
         states: u64,
         guard: Side,
         then: Made<bool>,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<bool>, Invalid> {
         let then = then.later(states);
         if states == 0 {
             return Ok(then);
         }
-        let guard = self.side(guard, lo, hi + states - 1)?;
-        let guard = !self.some_state(!guard, Tick(0), Some(states - 1), lo, hi);
-        Ok(self.both(guard, then, lo, hi))
-    }
-
-    fn until(
-        &mut self,
-        window: Window,
-        guard: &[(NodeId, bool)],
-        first: Side,
-        second: Side,
-        lo: u64,
-        hi: u64,
-    ) -> Result<Made<bool>, Invalid> {
-        let from = window.from.0;
-        let width = self.stretch(window, lo, hi).width;
-        let then = self.until_here(width, first, second, lo + from, hi + from)?;
-        self.guarded(from, Side { any: guard, negated: false }, then, lo, hi)
+        let guard = self.side(guard, (lo, hi + states - 1))?;
+        let guard = !self.some_state(!guard, Tick(0), Some(states - 1), (lo, hi));
+        Ok(self.both(guard, then, (lo, hi)))
     }
 
     /// Until over windows that begin at the present state.
@@ -311,28 +275,27 @@ impl Builder<'_> {
         width: Option<u64>,
         first: Side,
         second: Side,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<bool>, Invalid> {
         if width == Some(0) {
-            return self.side(second, lo, hi);
+            return self.side(second, (lo, hi));
         }
         let end = self.horizon;
         let (reach, before) = width.map_or((end, hi.max(end - 1)), |w| (hi + w, hi + w - 1));
         if lo == before {
             // One state before the last: second, or first and then second.
-            let next = self.side(second, lo + 1, lo + 1)?.later(1);
-            let first = self.side(first, lo, lo)?;
-            let then = self.both(first, next, lo, lo);
-            let second = self.side(second, lo, lo)?;
-            return Ok(self.any(vec![second, then], lo, lo));
+            let next = self.side(second, (lo + 1, lo + 1))?.later(1);
+            let first = self.side(first, (lo, lo))?;
+            let then = self.both(first, next, (lo, lo));
+            let second = self.side(second, (lo, lo))?;
+            return Ok(self.any(vec![second, then], (lo, lo)));
         }
-        let made_second = self.side(second, lo, reach)?;
-        let made_first = self.side(first, lo, before)?;
+        let made_second = self.side(second, (lo, reach))?;
+        let made_first = self.side(first, (lo, before))?;
         let (p, q) = match (made_first, made_second) {
             (_, Made::Constant(value)) => return Ok(Made::Constant(value)),
-            (Made::Constant(true), _) => return Ok(self.some_state(made_second, Tick(0), width, lo, hi)),
-            (Made::Constant(false), _) => return self.side(second, lo, hi),
+            (Made::Constant(true), _) => return Ok(self.some_state(made_second, Tick(0), width, (lo, hi))),
+            (Made::Constant(false), _) => return self.side(second, (lo, hi)),
             (Made::Of(p), Made::Of(q)) => (p, q),
         };
         let ahead = p.ahead.min(q.ahead);
@@ -349,8 +312,8 @@ impl Builder<'_> {
         if width.is_none() {
             return Ok(Made::Of(chain));
         }
-        let in_time = self.some_state(made_second, Tick(0), width, lo, hi);
-        Ok(self.both(in_time, Made::Of(chain), lo, hi))
+        let in_time = self.some_state(made_second, Tick(0), width, (lo, hi));
+        Ok(self.both(in_time, Made::Of(chain), (lo, hi)))
     }
 
     fn chain(

@@ -13,7 +13,7 @@ use super::cell::{Cell, Machine, Place, Ref};
 use super::track::{Numbers, Track};
 use crate::base::lanes::Lanes;
 use crate::base::tick::{Clock, Tick};
-use crate::logic::formula::{Node, NodeId, Tree};
+use crate::logic::formula::{NodeId, Tree};
 use crate::logic::invalid::Invalid;
 use crate::logic::reach::{Part, children_first, last_state};
 use std::collections::BTreeMap;
@@ -68,6 +68,9 @@ pub(super) struct Plan {
     pub(super) spans: Vec<(u64, u64)>,
 }
 
+/// First and last position at which something is asked about.
+type Span = (u64, u64);
+
 /// A part made: the same everywhere, or a cell.
 #[derive(Clone, Copy, Debug)]
 enum Made<T> {
@@ -95,6 +98,12 @@ impl std::ops::Not for Made<bool> {
     }
 }
 
+impl Made<bool> {
+    fn not_if(self, negated: bool) -> Self {
+        if negated { !self } else { self }
+    }
+}
+
 fn later(child: Ref, by: u64) -> Ref {
     match child.place {
         Place::Now | Place::Late => Ref { ahead: child.ahead + by, ..child },
@@ -106,7 +115,7 @@ fn later(child: Ref, by: u64) -> Ref {
 struct Facts {
     place: Place,
     /// First and last needed position.
-    range: Option<(u64, u64)>,
+    range: Option<Span>,
     /// A position is settled at most so many states later.
     latency: u64,
     /// Positions settle in ascending order.
@@ -137,8 +146,8 @@ struct Builder<'t> {
     cells: Vec<Cell>,
     facts: Vec<Facts>,
     present: BTreeMap<NowKey, usize>,
-    formulas: BTreeMap<(u32, u64, u64), Made<bool>>,
-    numbers: BTreeMap<(u32, u64, u64), Made<f64>>,
+    formulas: BTreeMap<(u32, Span), Made<bool>>,
+    numbers: BTreeMap<(u32, Span), Made<f64>>,
     /// The value of each term that is the same everywhere.
     constants: Vec<Option<f64>>,
     watches: BTreeMap<u32, Watched>,
@@ -183,13 +192,13 @@ impl Plan {
             builder.note(part);
         }
         let answer = match root {
-            Part::Node(id) => match builder.formula(id, 0, 0)? {
+            Part::Node(id) => match builder.formula(id, (0, 0))? {
                 Made::Constant(value) => Answer::Truth(value),
                 Made::Of(child) => Answer::Formula(builder.held(child, 0)),
             },
-            Part::Term(id) => match builder.number(id, 0, 0)? {
+            Part::Term(id) => match builder.number(id, (0, 0))? {
                 Made::Constant(value) => Answer::Value(value),
-                Made::Of(child) => Answer::Metric(builder.held_number(child, 0)),
+                Made::Of(child) => Answer::Metric(builder.held(child, 0)),
             },
         };
         builder.finish(answer)
@@ -200,23 +209,15 @@ impl Builder<'_> {
     /// Constants and implications, before anything is made.
     fn note(&mut self, part: Part) {
         match part {
-            Part::Term(id) => self.constants[id.0 as usize] = self.constant(id),
+            Part::Term(id) => {
+                self.constants[id.0 as usize] = self.tree.constant(id, |x| self.constants[x.0 as usize]);
+            }
             Part::Node(id) => {
-                if self.antecedent(id).is_some() {
+                if self.tree.antecedent(id).is_some() {
                     let watched = Watched { implication: id, always: false, watches: Vec::new() };
                     self.watches.insert(id.0, watched);
                 }
             }
-        }
-    }
-
-    /// The antecedent of `a => b`, which is lowered to `!a | b`.
-    fn antecedent(&self, id: NodeId) -> Option<NodeId> {
-        let Node::Or(parts) = &self.tree.nodes[id.0 as usize] else { return None };
-        let [first, _] = parts.as_slice() else { return None };
-        match &self.tree.nodes[first.0 as usize] {
-            Node::Not(antecedent) => Some(*antecedent),
-            _ => None,
         }
     }
 
@@ -241,7 +242,7 @@ impl Builder<'_> {
     }
 
     /// A cell with the answer at one position; `range` is where it looks at its children.
-    fn answer(&mut self, machine: Machine, range: (u64, u64), latency: u64, numeric: bool) -> Ref {
+    fn answer(&mut self, machine: Machine, range: Span, latency: u64, numeric: bool) -> Ref {
         let place = Place::Held;
         let facts = Facts { place, range: Some(range), latency, in_order: true, kept: None, numeric };
         let cell = self.add(machine, facts);
@@ -249,14 +250,7 @@ impl Builder<'_> {
     }
 
     /// A cell with a track. If one position alone is asked about, it keeps the answer there.
-    fn late(
-        &mut self,
-        machine: Machine,
-        range: (u64, u64),
-        latency: u64,
-        in_order: bool,
-        numeric: bool,
-    ) -> Ref {
+    fn late(&mut self, machine: Machine, range: Span, latency: u64, in_order: bool, numeric: bool) -> Ref {
         let latency = latency.min(self.horizon - range.0);
         let single = range.0 == range.1;
         let place = if single { Place::Held } else { Place::Late };
@@ -267,7 +261,7 @@ impl Builder<'_> {
     }
 
     /// A parent looks at a child in this range of its own positions.
-    fn touch(&mut self, child: Ref, (lo, hi): (u64, u64)) {
+    fn touch(&mut self, child: Ref, (lo, hi): Span) {
         if child.place == Place::Now {
             let (lo, hi) = (lo + child.ahead, (hi + child.ahead).min(self.horizon));
             let range = &mut self.facts[child.cell].range;

@@ -1,9 +1,9 @@
 //! Cells of numbers, and comparisons.
 
-use super::{Builder, Made, NowKey};
+use super::{Builder, Made, NowKey, Span};
 use crate::base::lanes::Lanes;
 use crate::base::tick::Tick;
-use crate::logic::formula::{Aggregation, NodeId, Operation, Relation, Term, TermId, Window};
+use crate::logic::formula::{Aggregation, NodeId, Operation, Relation, Term, TermId, Window, in_time};
 use crate::logic::invalid::Invalid;
 use crate::logic::monitor::cell::{Arithmetic, Extent, Machine, Place, Ref};
 use crate::logic::monitor::numbers::combine;
@@ -13,39 +13,25 @@ use crate::logic::monitor::track::Numbers;
 const MOST_ADDED: u64 = 1 << 31;
 
 impl Builder<'_> {
-    /// The value of a term that is the same everywhere; its operands have been looked at.
-    pub(super) fn constant(&self, id: TermId) -> Option<f64> {
-        let of = |id: &TermId| self.constants[id.0 as usize];
-        let apply = |arithmetic, x, y| combine(arithmetic, Lanes::splat(x), Lanes::splat(y)).0[0];
-        match &self.tree.terms[id.0 as usize] {
-            Term::Constant(value) => Some(*value),
-            Term::Combine(operation, x, y) => Some(apply(Arithmetic::Of(*operation), of(x)?, of(y)?)),
-            Term::Abs(x) => Some(apply(Arithmetic::Abs, of(x)?, 0.0)),
-            Term::Later(_, x) | Term::AtEnd(x) => of(x),
-            Term::Signal(_) | Term::Window(..) | Term::TimeUntil(_) => None,
-        }
-    }
-
     /// A comparison at the positions `lo ..= hi`.
     pub(super) fn compare(
         &mut self,
         relation: Relation,
         x: TermId,
         y: TermId,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<bool>, Invalid> {
         match (self.constants[x.0 as usize], self.constants[y.0 as usize]) {
-            (Some(x), Some(y)) => Ok(self.compared_constants(relation, x, y, lo, hi)),
-            (None, Some(y)) => self.against(relation, x, y, lo, hi),
-            (Some(x), None) => self.against(relation.flipped(), y, x, lo, hi),
+            (Some(x), Some(y)) => Ok(self.compared_constants(relation, x, y, (lo, hi))),
+            (None, Some(y)) => self.against(relation, x, y, (lo, hi)),
+            (Some(x), None) => self.against(relation.flipped(), y, x, (lo, hi)),
             (None, None) => {
-                let (x, y) = (self.number(x, lo, hi)?, self.number(y, lo, hi)?);
+                let (x, y) = (self.number(x, (lo, hi))?, self.number(y, (lo, hi))?);
                 if let (Made::Constant(x), Made::Constant(y)) = (&x, &y) {
                     return Ok(Made::Constant(relation.holds(*x, *y)));
                 }
                 let (x, y) = (self.of(x), self.of(y));
-                Ok(Made::Of(self.compared(relation, x, y, lo, hi)))
+                Ok(Made::Of(self.compared(relation, x, y, (lo, hi))))
             }
         }
     }
@@ -57,32 +43,26 @@ impl Builder<'_> {
         relation: Relation,
         x: TermId,
         c: f64,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<bool>, Invalid> {
-        use Aggregation::{Max, Min};
         use Relation::{AtLeast, AtMost, Greater, Less};
         if let Some(x) = self.constants[x.0 as usize] {
-            return Ok(self.compared_constants(relation, x, c, lo, hi));
+            return Ok(self.compared_constants(relation, x, c, (lo, hi)));
+        }
+        if let Some((w, x, any)) = self.tree.within(relation, x) {
+            let below = self.stretch(w, (lo, hi));
+            let child = self.against(relation, x, c, below.span)?;
+            return Ok(self.some_state(child.not_if(!any), w.from, below.width, (lo, hi)).not_if(!any));
         }
         match (&self.tree.terms[x.0 as usize], relation) {
-            (Term::Later(by, x), _) => Ok(self.against(relation, *x, c, lo + by.0, hi + by.0)?.later(by.0)),
-            (Term::Window(Min, w, x), Less | AtMost) | (Term::Window(Max, w, x), Greater | AtLeast) => {
-                let below = self.stretch(*w, lo, hi);
-                let child = self.against(relation, *x, c, below.lo, below.hi)?;
-                Ok(self.some_state(child, w.from, below.width, lo, hi))
+            (Term::TimeUntil(goal), Less | AtMost) if !c.is_nan() => {
+                self.in_time(relation, *goal, c, (lo, hi))
             }
-            (Term::Window(Min, w, x), Greater | AtLeast) | (Term::Window(Max, w, x), Less | AtMost) => {
-                let below = self.stretch(*w, lo, hi);
-                let child = self.against(relation, *x, c, below.lo, below.hi)?;
-                Ok(!self.some_state(!child, w.from, below.width, lo, hi))
-            }
-            (Term::TimeUntil(goal), Less | AtMost) if !c.is_nan() => self.in_time(relation, *goal, c, lo, hi),
             (Term::TimeUntil(goal), Greater | AtLeast) if !c.is_nan() => {
                 let opposite = if relation == Greater { AtMost } else { Less };
-                Ok(!self.in_time(opposite, *goal, c, lo, hi)?)
+                Ok(!self.in_time(opposite, *goal, c, (lo, hi))?)
             }
-            _ => self.against_number(relation, x, c, lo, hi),
+            _ => self.against_number(relation, x, c, (lo, hi)),
         }
     }
 
@@ -91,16 +71,15 @@ impl Builder<'_> {
         relation: Relation,
         x: TermId,
         c: f64,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<bool>, Invalid> {
-        let x = match self.number(x, lo, hi)? {
+        let x = match self.number(x, (lo, hi))? {
             // A number may turn out the same everywhere only here: the time until what never holds.
             Made::Constant(x) => return Ok(Made::Constant(relation.holds(x, c))),
             Made::Of(x) => x,
         };
         let c = self.fixed(c);
-        Ok(Made::Of(self.compared(relation, x, c, lo, hi)))
+        Ok(Made::Of(self.compared(relation, x, c, (lo, hi))))
     }
 
     /// `time until goal < c` or `<= c` as finally within the ticks that fulfil it, up to the horizon.
@@ -109,42 +88,30 @@ impl Builder<'_> {
         relation: Relation,
         goal: NodeId,
         c: f64,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<bool>, Invalid> {
-        let fulfils = |ticks: u64| relation.holds(self.clock.seconds(Tick(ticks)), c);
         if relation.holds(f64::INFINITY, c) {
             return Ok(Made::Constant(true));
         }
-        if !fulfils(0) {
+        let Some(within) = in_time(relation, c, self.clock, self.horizon - lo) else {
             return Ok(Made::Constant(false));
-        }
-        // The last tick that fulfils it, by bisection.
-        let (mut within, mut beyond) = (0, self.horizon - lo + 1);
-        while beyond - within > 1 {
-            let middle = within + (beyond - within) / 2;
-            if fulfils(middle) {
-                within = middle;
-            } else {
-                beyond = middle;
-            }
-        }
+        };
         // Windows of the later positions may be cut; if all are, there is no bound.
         let is_bounded = hi + within <= self.horizon || lo + within < self.horizon;
         let width = is_bounded.then_some(within);
-        let child = self.formula(goal, lo, self.horizon.min(hi.saturating_add(within)))?;
-        Ok(self.some_state(child, Tick(0), width, lo, hi))
+        let child = self.formula(goal, (lo, self.horizon.min(hi.saturating_add(within))))?;
+        Ok(self.some_state(child, Tick(0), width, (lo, hi)))
     }
 
-    fn compared_constants(&mut self, relation: Relation, x: f64, y: f64, lo: u64, hi: u64) -> Made<bool> {
+    fn compared_constants(&mut self, relation: Relation, x: f64, y: f64, (lo, hi): Span) -> Made<bool> {
         if !self.margins {
             return Made::Constant(relation.holds(x, y));
         }
         let (x, y) = (self.fixed(x), self.fixed(y));
-        Made::Of(self.compared(relation, x, y, lo, hi))
+        Made::Of(self.compared(relation, x, y, (lo, hi)))
     }
 
-    fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
+    fn compared(&mut self, relation: Relation, x: Ref, y: Ref, (lo, hi): Span) -> Ref {
         let ahead = common(x, y);
         if let (Some(ahead), true) = (ahead, of_now(x, y)) {
             let key = NowKey::Compare(relation as u8, x.cell, y.cell);
@@ -152,16 +119,16 @@ impl Builder<'_> {
             return super::later(now, ahead);
         }
         if lo == hi {
-            let (x, y) = (self.held_number(x, lo), self.held_number(y, lo));
+            let (x, y) = (self.held(x, lo), self.held(y, lo));
             return self.answer(Machine::CompareHeld(relation, x, y), (lo, lo), self.horizon, false);
         }
-        let pair = self.pair(x, y, lo, hi);
+        let pair = self.pair(x, y, (lo, hi));
         let machine = Machine::CompareLate(relation, pair.x, pair.y);
         super::later(self.late(machine, pair.range, pair.latency, pair.in_order, false), pair.ahead)
     }
 
     /// Two operands of a late cell.
-    fn pair(&mut self, x: Ref, y: Ref, lo: u64, hi: u64) -> Pair {
+    fn pair(&mut self, x: Ref, y: Ref, (lo, hi): Span) -> Pair {
         let aheads = [x, y].into_iter().filter(|child| child.place != Place::Fixed).map(|child| child.ahead);
         let ahead = aheads.min().unwrap_or(0);
         let less = |child: Ref| Ref { ahead: child.ahead.saturating_sub(ahead), ..child };
@@ -183,22 +150,12 @@ impl Builder<'_> {
         }
     }
 
-    /// The answer at position `at` to a number that is asked about there alone.
-    pub(super) fn held_number(&mut self, child: Ref, at: u64) -> Ref {
-        if child.place != Place::Now {
-            return child;
-        }
-        self.touch(child, (at, at));
-        let at = at + child.ahead;
-        self.answer(Machine::CaptureNumber(child), (at, at), 0, true)
-    }
-
     /// The number `id`, asked about at the positions `lo ..= hi`.
-    pub(super) fn number(&mut self, id: TermId, lo: u64, hi: u64) -> Result<Made<f64>, Invalid> {
+    pub(super) fn number(&mut self, id: TermId, (lo, hi): Span) -> Result<Made<f64>, Invalid> {
         if let Some(value) = self.constants[id.0 as usize] {
             return Ok(Made::Constant(value));
         }
-        if let Some(&made) = self.numbers.get(&(id.0, lo, hi)) {
+        if let Some(&made) = self.numbers.get(&(id.0, (lo, hi))) {
             return Ok(made);
         }
         self.check_size()?;
@@ -209,19 +166,19 @@ impl Builder<'_> {
                 Made::Of(self.present(NowKey::Signal(signal.0), Machine::Signal(signal.0 as usize), true))
             }
             Term::Combine(operation, x, y) => {
-                let (x, y) = (self.number(*x, lo, hi)?, self.number(*y, lo, hi)?);
-                self.joined(Arithmetic::Of(*operation), x, y, lo, hi)
+                let (x, y) = (self.number(*x, (lo, hi))?, self.number(*y, (lo, hi))?);
+                self.joined(Arithmetic::Of(*operation), x, y, (lo, hi))
             }
             Term::Abs(x) => {
-                let x = self.number(*x, lo, hi)?;
-                self.joined(Arithmetic::Abs, x, x, lo, hi)
+                let x = self.number(*x, (lo, hi))?;
+                self.joined(Arithmetic::Abs, x, x, (lo, hi))
             }
-            Term::Later(by, x) => self.number(*x, lo + by.0, hi + by.0)?.later(by.0),
-            Term::Window(aggregation, w, x) => self.window(*aggregation, *w, *x, lo, hi)?,
-            Term::AtEnd(x) => match self.number(*x, self.horizon, self.horizon)? {
+            Term::Later(by, x) => self.number(*x, (lo + by.0, hi + by.0))?.later(by.0),
+            Term::Window(aggregation, w, x) => self.window(*aggregation, *w, *x, (lo, hi))?,
+            Term::AtEnd(x) => match self.number(*x, (self.horizon, self.horizon))? {
                 Made::Constant(value) => Made::Constant(value),
                 Made::Of(end) => {
-                    let end = self.held_number(end, self.horizon);
+                    let end = self.held(end, self.horizon);
                     Made::Of(if lo == hi {
                         end
                     } else {
@@ -229,34 +186,34 @@ impl Builder<'_> {
                     })
                 }
             },
-            Term::TimeUntil(goal) => match self.formula(*goal, lo, self.horizon)? {
+            Term::TimeUntil(goal) => match self.formula(*goal, (lo, self.horizon))? {
                 Made::Constant(true) => Made::Constant(0.0),
                 Made::Constant(false) => Made::Constant(f64::INFINITY),
-                Made::Of(child) => Made::Of(self.time(child, lo, hi)),
+                Made::Of(child) => Made::Of(self.time(child, (lo, hi))),
             },
         };
-        self.numbers.insert((id.0, lo, hi), made);
+        self.numbers.insert((id.0, (lo, hi)), made);
         Ok(made)
     }
 
     /// Arithmetic, worked out at once where both numbers are the same everywhere.
-    fn joined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, lo: u64, hi: u64) -> Made<f64> {
+    fn joined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, (lo, hi): Span) -> Made<f64> {
         if let (Made::Constant(x), Made::Constant(y)) = (&x, &y) {
             return Made::Constant(combine(arithmetic, Lanes::splat(*x), Lanes::splat(*y)).0[0]);
         }
-        Made::Of(self.combined(arithmetic, x, y, lo, hi))
+        Made::Of(self.combined(arithmetic, x, y, (lo, hi)))
     }
 
-    fn combined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, lo: u64, hi: u64) -> Ref {
+    fn combined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, (lo, hi): Span) -> Ref {
         let (x, y) = (self.of(x), self.of(y));
         if let (Some(ahead), true) = (common(x, y), of_now(x, y)) {
             return super::later(self.combined_now(arithmetic, x, y), ahead);
         }
         if lo == hi {
-            let (x, y) = (self.held_number(x, lo), self.held_number(y, lo));
+            let (x, y) = (self.held(x, lo), self.held(y, lo));
             return self.answer(Machine::CombineHeld(arithmetic, x, y), (lo, lo), self.horizon, true);
         }
-        self.combined_late(arithmetic, x, y, lo, hi)
+        self.combined_late(arithmetic, x, y, (lo, hi))
     }
 
     fn combined_now(&mut self, arithmetic: Arithmetic, x: Ref, y: Ref) -> Ref {
@@ -268,8 +225,8 @@ impl Builder<'_> {
         self.present(key, Machine::CombineNow(arithmetic, x.cell, y.cell), true)
     }
 
-    fn combined_late(&mut self, arithmetic: Arithmetic, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
-        let pair = self.pair(x, y, lo, hi);
+    fn combined_late(&mut self, arithmetic: Arithmetic, x: Ref, y: Ref, (lo, hi): Span) -> Ref {
+        let pair = self.pair(x, y, (lo, hi));
         let machine = Machine::CombineLate(arithmetic, pair.x, pair.y);
         super::later(self.late(machine, pair.range, pair.latency, pair.in_order, true), pair.ahead)
     }
@@ -279,11 +236,10 @@ impl Builder<'_> {
         aggregation: Aggregation,
         window: Window,
         x: TermId,
-        lo: u64,
-        hi: u64,
+        (lo, hi): Span,
     ) -> Result<Made<f64>, Invalid> {
-        let below = self.stretch(window, lo, hi);
-        let child = match self.number(x, below.lo, below.hi)? {
+        let below = self.stretch(window, (lo, hi));
+        let child = match self.number(x, below.span)? {
             Made::Of(child) => child,
             // A sum of constants has as many states as the window; they count once they are seen.
             Made::Constant(value) => {
@@ -310,19 +266,10 @@ impl Builder<'_> {
             Aggregation::Sum | Aggregation::Mean => None,
         };
         if let (Some(operation), Some(width), true) = (smallest, below.width, lo < hi) {
-            // Windows of 2, 4, 8, … states, each of two of the last size.
-            let states = width + 1;
             let arithmetic = Arithmetic::Of(operation);
-            let (mut size, mut half) = (1, child);
-            while size * 2 <= states {
-                let (next, end) = (super::later(half, size), hi + states - 2 * size);
-                half = self.combined_late(arithmetic, half, next, lo, end);
-                size *= 2;
-            }
-            if size < states {
-                let next = super::later(half, states - size);
-                half = self.combined_late(arithmetic, half, next, lo, hi);
-            }
+            let half = self.doubled(child, width, (lo, hi), |all, [x, y], range| {
+                all.combined_late(arithmetic, x, y, range)
+            });
             return Ok(Made::Of(super::later(half, ahead)));
         }
         let (at, states) = (hi.saturating_sub(lo) + 1, self.horizon.saturating_sub(lo) + 1);
@@ -342,7 +289,7 @@ impl Builder<'_> {
         Ok(Made::Of(super::later(self.late(machine, (lo, hi), latency, all, true), ahead)))
     }
 
-    fn time(&mut self, child: Ref, lo: u64, hi: u64) -> Ref {
+    fn time(&mut self, child: Ref, (lo, hi): Span) -> Ref {
         self.touch(child, (lo, self.horizon));
         if child.place == Place::Held {
             return self.answer(Machine::TimeHeld(child), (lo, lo), self.horizon, true);

@@ -16,9 +16,9 @@ impl Builder<'_> {
         }
         let k = id.0 as usize;
         let tree = self.tree;
-        let made = if let Some(truth) = self.node_constants[k] {
+        let made = if let Some(truth) = self.parts.node_constants[k] {
             self.add_truth(Machine::Fixed(truth), range)?
-        } else if let Some(slot) = self.node_slots[k] {
+        } else if let Some(slot) = self.parts.node_slots[k] {
             self.add_truth(Machine::Present(slot), range)?
         } else {
             match &tree.nodes[k] {
@@ -47,7 +47,7 @@ impl Builder<'_> {
     fn any(&mut self, parts: &[NodeId], negated: bool, range: Range) -> Result<Ref, Invalid> {
         let mut operands = Vec::new();
         for part in parts {
-            if self.node_constants[part.0 as usize].is_none() {
+            if self.parts.node_constants[part.0 as usize].is_none() {
                 let operand = self.truth(*part, range)?;
                 operands.push(if negated { !operand } else { operand });
             }
@@ -86,7 +86,7 @@ impl Builder<'_> {
     }
 
     fn compare(&mut self, relation: Relation, x: TermId, y: TermId, range: Range) -> Result<Ref, Invalid> {
-        match (self.term_constants[x.0 as usize], self.term_constants[y.0 as usize]) {
+        match (self.parts.term_constants[x.0 as usize], self.parts.term_constants[y.0 as usize]) {
             (None, Some(c)) => self.against(relation, x, c, range),
             (Some(c), None) => self.against(relation.flipped(), y, c, range),
             (Some(x), Some(y)) => self.add_truth(Machine::Alike(relation, x, y), range),
@@ -99,32 +99,27 @@ impl Builder<'_> {
 
     /// A comparison with a constant looks at the moments of extremes and times one by one.
     fn against(&mut self, relation: Relation, x: TermId, c: f64, range: Range) -> Result<Ref, Invalid> {
-        use Aggregation::{Max, Mean, Min};
         use Relation::{AtLeast, AtMost, Equal, Greater, Less, Unequal};
-        if let Some(value) = self.term_constants[x.0 as usize] {
+        if let Some(value) = self.parts.term_constants[x.0 as usize] {
             return self.add_truth(Machine::Alike(relation, value, c), range);
         }
         if let Some(slot) = self.compare_now(relation, x, c) {
             return self.add_truth(Machine::Present(slot), range);
         }
         let tree = self.tree;
+        if let Some((w, x, any)) = tree.within(relation, x) {
+            return self.through_window(w, (relation, x, c), any, range);
+        }
         match (&tree.terms[x.0 as usize], relation) {
-            (Term::Later(by, x), _) => self.through_window((*by, Some(*by)), (relation, *x, c), true, range),
             (Term::AtEnd(x), _) => {
                 let end = self.last();
                 let operand = self.against(relation, *x, c, (end, end))?;
                 self.add_truth(Machine::Spread(operand), range)
             }
-            (Term::Window(Min, w, x), Less | AtMost) | (Term::Window(Max, w, x), Greater | AtLeast) => {
-                self.through_window((w.from, w.to), (relation, *x, c), true, range)
+            (Term::Window(Aggregation::Mean, w, x), _) if w.to == Some(w.from) => {
+                self.through_window(*w, (relation, *x, c), true, range)
             }
-            (Term::Window(Min, w, x), Greater | AtLeast) | (Term::Window(Max, w, x), Less | AtMost) => {
-                self.through_window((w.from, w.to), (relation, *x, c), false, range)
-            }
-            (Term::Window(Mean, w, x), _) if w.to == Some(w.from) => {
-                self.through_window((w.from, w.to), (relation, *x, c), true, range)
-            }
-            (Term::Window(Mean, w, x), _) => {
+            (Term::Window(Aggregation::Mean, w, x), _) => {
                 let (from, to) = self.shifts(*w);
                 let of = self.excess(*x, c, self.through((from, to), range))?;
                 if range.0 < range.1 {
@@ -157,18 +152,15 @@ impl Builder<'_> {
     /// The comparison somewhere, or everywhere, in a window.
     fn through_window(
         &mut self,
-        (from, to): (Tick, Option<Tick>),
+        window: Window,
         (relation, x, c): (Relation, TermId, f64),
         somewhere: bool,
         range: Range,
     ) -> Result<Ref, Invalid> {
-        let shifts = self.shifts(Window { from, to });
+        let shifts = self.shifts(window);
         let operand = self.against(relation, x, c, self.through(shifts, range))?;
-        if somewhere {
-            self.reach(shifts, operand, range)
-        } else {
-            self.reach(shifts, !operand, range).map(|reach| !reach)
-        }
+        let reach = self.reach(shifts, if somewhere { operand } else { !operand }, range)?;
+        Ok(if somewhere { reach } else { !reach })
     }
 
     /// The time until a goal is at most `c` seconds, or less.

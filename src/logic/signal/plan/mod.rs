@@ -7,13 +7,13 @@ mod numbers;
 use super::cells::{Cell, Cells, Root};
 use super::moment::{FOREVER, LONGEST_HORIZON, Moment, Scale};
 use super::number::{Number, Source};
-use super::present::{Code, Present};
 use super::truth::{Machine, Ref, Truth};
 use super::{Watched, Way};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
-use crate::logic::formula::{Node, NodeId, Tree, Window};
+use crate::logic::formula::{NodeId, Tree, Window};
 use crate::logic::invalid::Invalid;
+use crate::logic::present::{Code, Parts, Present};
 use crate::logic::reach::{Asked, Part, asked, children_first, last_state};
 use std::collections::BTreeMap;
 
@@ -31,21 +31,21 @@ pub(super) fn plan(
     let scale = builder.scale;
     let mut watched = Vec::new();
     for part in order {
-        builder.note(part);
+        builder.parts.note(part);
         if let Some(slot) = builder.antecedent(part) {
             let (first, last) = asked.of(part).unwrap_or((0, asked.last));
             watched.push(Watched { slot, first: scale.exact(Tick(first)), last: scale.exact(Tick(last)) });
         }
     }
     if let Some(direct) = builder.direct(root) {
-        return Ok((builder.present, Way::Direct(direct), scale, watched));
+        return Ok((builder.parts.present, Way::Direct(direct), scale, watched));
     }
     let root = match root {
         Part::Node(id) => Root::Truth(builder.truth(id, (0, 0))?),
         Part::Term(id) => Root::Number(builder.number(id, (0, 0))?),
     };
     let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
-    Ok((builder.present, Way::Cells(Box::new(cells)), scale, watched))
+    Ok((builder.parts.present, Way::Cells(Box::new(cells)), scale, watched))
 }
 
 /// The code of present states and the truths of a formula, operands first, and which of them it is.
@@ -57,10 +57,10 @@ pub(super) fn plan_cells(
 ) -> Result<(Present, Vec<Truth>, Ref, Scale), Invalid> {
     let (mut builder, order, _) = prepare(tree, Part::Node(root), horizon, quantum, true)?;
     for part in order {
-        builder.note(part);
+        builder.parts.note(part);
     }
     let root = builder.truth(root, (0, 0))?;
-    Ok((builder.present, builder.truths, root, builder.scale))
+    Ok((builder.parts.present, builder.truths, root, builder.scale))
 }
 
 /// What builds cells, the parts in order, and the last ticks at which they are asked about.
@@ -87,15 +87,10 @@ fn prepare(
     let builder = Builder {
         tree,
         scale,
-        margins,
-        present: Present::default(),
+        parts: Parts::new(tree, margins),
         truths: Vec::new(),
         numbers: Vec::new(),
         order: Vec::new(),
-        node_slots: vec![None; tree.nodes.len()],
-        term_slots: vec![None; tree.terms.len()],
-        node_constants: vec![None; tree.nodes.len()],
-        term_constants: vec![None; tree.terms.len()],
         known_truths: BTreeMap::new(),
         known_numbers: BTreeMap::new(),
         known_comparisons: BTreeMap::new(),
@@ -109,37 +104,24 @@ type Range = (Moment, Moment);
 struct Builder<'t> {
     tree: &'t Tree,
     scale: Scale,
-    /// Whether margins are asked for: then a comparison of constants has one, too, and is no constant.
-    margins: bool,
-    present: Present,
+    parts: Parts<'t>,
     truths: Vec<Truth>,
     numbers: Vec<Number>,
     order: Vec<Cell>,
-    /// Results of the present state alone.
-    node_slots: Vec<Option<usize>>,
-    term_slots: Vec<Option<usize>>,
-    /// The constant parts.
-    node_constants: Vec<Option<bool>>,
-    term_constants: Vec<Option<f64>>,
     known_truths: BTreeMap<(u32, Range), Ref>,
     known_numbers: BTreeMap<(u32, Range), usize>,
     known_comparisons: BTreeMap<(u8, u32, u64), usize>,
 }
 
 impl Builder<'_> {
-    /// Where the left side of an implication is in the code of present states: `a => b` is lowered to `!a | b`. One that is
-    /// the same everywhere stands there, too.
+    /// Where the left side of an implication is in the code of present states. One that is the same everywhere stands there, too.
     fn antecedent(&mut self, part: Part) -> Option<usize> {
         let Part::Node(id) = part else { return None };
-        let Node::Or(parts) = &self.tree.nodes[id.0 as usize] else { return None };
-        let [first, _] = parts.as_slice() else { return None };
-        match &self.tree.nodes[first.0 as usize] {
-            Node::Not(antecedent) => match self.node_constants[antecedent.0 as usize] {
-                Some(true) => Some(self.present.add(Code::All([].into()))),
-                Some(false) => Some(self.present.add(Code::Any([].into()))),
-                None => self.node_slots[antecedent.0 as usize],
-            },
-            _ => None,
+        let antecedent = self.tree.antecedent(id)?.0 as usize;
+        match self.parts.node_constants[antecedent] {
+            Some(true) => Some(self.parts.present.add(Code::All([].into()))),
+            Some(false) => Some(self.parts.present.add(Code::Any([].into()))),
+            None => self.parts.node_slots[antecedent],
         }
     }
 

@@ -1,10 +1,10 @@
 //! Cells of numbers.
 
 use super::super::number::Source;
-use super::super::present::Code;
 use super::{Builder, Range};
 use crate::logic::formula::{Aggregation, Operation, Term, TermId};
 use crate::logic::invalid::Invalid;
+use crate::logic::present::Code;
 
 impl Builder<'_> {
     /// A number that is the same everywhere.
@@ -16,9 +16,11 @@ impl Builder<'_> {
     /// side of the constant, which the rounded mean need not have.
     pub(super) fn excess(&mut self, x: TermId, constant: f64, range: Range) -> Result<usize, Invalid> {
         // A constant is known in states to come, too.
-        if let (Some(slot), None) = (self.term_slots[x.0 as usize], self.term_constants[x.0 as usize]) {
-            let constant = self.present.add(Code::Number(constant));
-            let slot = self.present.add(Code::Combine(Operation::Subtract, slot, constant));
+        if let (Some(slot), None) =
+            (self.parts.term_slots[x.0 as usize], self.parts.term_constants[x.0 as usize])
+        {
+            let constant = self.parts.present.add(Code::Number(constant));
+            let slot = self.parts.present.add(Code::Combine(Operation::Subtract, slot, constant));
             return self.add_number(Source::Present(slot), range);
         }
         let (x, constant) = (self.number(x, range)?, self.fixed(constant, range)?);
@@ -37,9 +39,9 @@ impl Builder<'_> {
         }
         let k = id.0 as usize;
         let tree = self.tree;
-        let source = if let Some(value) = self.term_constants[k] {
+        let source = if let Some(value) = self.parts.term_constants[k] {
             Source::Fixed(value)
-        } else if let Some(slot) = self.term_slots[k] {
+        } else if let Some(slot) = self.parts.term_slots[k] {
             Source::Present(slot)
         } else {
             match &tree.terms[k] {

@@ -1,10 +1,11 @@
 //! The cells of a robustness: those of the Boolean monitor, with two bounds over time instead of a truth.
 
-use super::curve::{Curve, Reader};
 use super::fold::{self, Way, larger};
+use super::reader::Reader;
 use crate::logic::invalid::Invalid;
+use crate::logic::present::Present;
 use crate::logic::signal::moment::{FOREVER, Moment};
-use crate::logic::signal::present::Present;
+use crate::logic::signal::stream::Stream;
 use crate::logic::signal::truth::{Machine, Ref, Seen, Truth};
 
 /// Most pieces that are stored; a trial that needs more is unresolved.
@@ -22,7 +23,7 @@ const ENOUGH: usize = 256;
 struct Margin {
     machine: Machine,
     /// Lower and upper.
-    bounds: [Curve; 2],
+    bounds: [Stream; 2],
     first: Moment,
     end: Moment,
     /// Before this moment both bounds are the same.
@@ -66,18 +67,27 @@ impl Margin {
             return Err(Invalid::NoMargin);
         }
         let (first, end) = (track.first, track.end);
-        let curve = Curve::new(first, end);
+        let curve = Stream::new(first, end);
         Ok(Self { machine, bounds: [curve.clone(), curve], first, end, settled: first, way: Way::new(first) })
     }
 
     fn clear(&mut self) {
-        self.bounds.iter_mut().for_each(Curve::clear);
+        self.bounds.iter_mut().for_each(Stream::clear);
         self.settled = self.first;
         self.way = Way::new(self.first);
     }
 
     fn is_single(&self) -> bool {
         self.end == self.first + 1
+    }
+
+    /// Of a cell that is asked about at one moment only: what must be so until the goal, and the goal.
+    fn way_to(&self) -> Option<(Option<Ref>, Ref)> {
+        match &self.machine {
+            Machine::Reach(_, goal) if self.is_single() => Some((None, *goal)),
+            Machine::Until { first, second, .. } if self.is_single() => Some((Some(*first), *second)),
+            _ => None,
+        }
     }
 
     /// The moments that a question asked at the only moment is about: the first, and the last.
@@ -103,7 +113,7 @@ impl Margin {
         }
         for bound in &mut self.bounds {
             bound.cut(self.settled);
-            bound.push(to, present.number(slot));
+            bound.extend(to, present.number(slot));
         }
         self.settled = to;
     }
@@ -118,32 +128,27 @@ impl Margin {
         for side in 0..2 {
             let unknown = if side == 0 { f64::NEG_INFINITY } else { f64::INFINITY };
             let read = |of: &Ref| reader(cells, *of, side);
-            let window = self.window();
-            let (single, first, way) = (self.is_single(), self.first, self.way);
+            let (window, way_to) = (self.window(), self.way_to());
             let own = &mut self.bounds[side];
             own.cut(from);
+            if let Some((hold, goal)) = way_to {
+                let (hold, goal, mut way) = (hold.map(|hold| read(&hold)), read(&goal), self.way);
+                way.go((hold, goal), self.first, window, goal.curve.end);
+                own.extend(self.end, way.best);
+                continue;
+            }
             match &self.machine {
-                Machine::Present(_) => own.push(self.end, unknown),
+                Machine::Present(_) => own.extend(self.end, unknown),
                 Machine::Fixed(truth) => {
-                    own.push(self.end, if *truth { f64::INFINITY } else { f64::NEG_INFINITY });
+                    own.extend(self.end, if *truth { f64::INFINITY } else { f64::NEG_INFINITY });
                 }
                 Machine::Alike(relation, x, y) => {
                     let margin = relation.margin(*x, *y);
-                    own.push(self.end, if margin.is_nan() { f64::NEG_INFINITY } else { margin });
+                    own.extend(self.end, if margin.is_nan() { f64::NEG_INFINITY } else { margin });
                 }
                 Machine::Any(operands) => {
                     let operands: Vec<Reader<'_>> = operands.iter().map(read).collect();
                     fold::any(own, &operands, from);
-                }
-                Machine::Reach(_, x) if single => {
-                    let mut way = way;
-                    way.go((None, read(x)), first, window, read(x).curve.end);
-                    own.push(self.end, way.best);
-                }
-                Machine::Until { first: p, second: q, .. } if single => {
-                    let mut way = way;
-                    way.go((Some(read(p)), read(q)), first, window, read(q).curve.end);
-                    own.push(self.end, way.best);
                 }
                 Machine::Reach(seen, x) => fold::slide(own, read(x), from, *seen),
                 Machine::Until { from: a, to: b, first: p, second: q } => {
@@ -151,10 +156,10 @@ impl Margin {
                 }
                 Machine::Spread(x) => {
                     let x = read(x);
-                    own.push(self.end, x.around(x.curve.end - 1).1);
+                    own.extend(self.end, x.around(x.curve.end - 1).1);
                 }
                 // Refused when it was made.
-                Machine::Compare(..) | Machine::Average(_) => own.push(self.end, unknown),
+                Machine::Compare(..) | Machine::Average(_) => own.extend(self.end, unknown),
             }
         }
         self.settle();
@@ -162,22 +167,11 @@ impl Margin {
 
     /// Goes along with operands that are settled, where one moment only is asked about.
     fn advance(&mut self, cells: &[Margin]) {
-        if !self.is_single() {
-            return;
-        }
-        let (first, window) = (self.first, self.window());
-        match &self.machine {
-            Machine::Reach(_, x) => {
-                let end = cells[x.cell].end.min(settled(cells, *x));
-                self.way.go((None, reader(cells, *x, 0)), first, window, end);
-            }
-            Machine::Until { first: p, second: q, .. } => {
-                let end = cells[q.cell].end.min(settled(cells, *p)).min(settled(cells, *q));
-                let operands = (Some(reader(cells, *p, 0)), reader(cells, *q, 0));
-                self.way.go(operands, first, window, end);
-            }
-            _ => {}
-        }
+        let Some((hold, goal)) = self.way_to() else { return };
+        let hold_settled = hold.map_or(Moment::MAX, |hold| settled(cells, hold));
+        let end = cells[goal.cell].end.min(settled(cells, goal)).min(hold_settled);
+        let operands = (hold.map(|hold| reader(cells, hold, 0)), reader(cells, goal, 0));
+        self.way.go(operands, self.first, self.window(), end);
     }
 
     /// Finds how far both bounds are the same.
@@ -200,22 +194,13 @@ impl Margin {
         if open >= self.end {
             return;
         }
-        match &self.machine {
-            Machine::Any(operands) => operands.iter().for_each(|x| need(x.cell, open)),
-            Machine::Reach(_, x) if self.is_single() => need(x.cell, self.way.next),
-            Machine::Until { first, second, .. } if self.is_single() => {
-                need(first.cell, self.way.next);
-                need(second.cell, self.way.next);
+        if let Some((hold, goal)) = self.way_to() {
+            for operand in hold.into_iter().chain([goal]) {
+                need(operand.cell, self.way.next);
             }
-            Machine::Reach(Seen::Within { from, .. }, x) => need(x.cell, open + from),
-            Machine::Reach(Seen::Soon { .. }, x) => need(x.cell, open),
-            Machine::Until { from, first, second, .. } => {
-                need(first.cell, open);
-                need(second.cell, open + from);
-            }
-            Machine::Spread(x) => need(x.cell, 0),
-            _ => {}
+            return;
         }
+        self.machine.needs(open, need, |_, _| {});
     }
 }
 

@@ -3,8 +3,9 @@
 //! Smallest values are largest ones with the sign turned. An operand that is not known yet has minus infinity as
 //! its lower bound and plus infinity as its upper one, so that each bound is worked out for itself.
 
-use super::curve::{Curve, Reader};
+use super::reader::Reader;
 use crate::logic::signal::moment::{FOREVER, Moment};
+use crate::logic::signal::stream::Stream;
 use crate::logic::signal::truth::Seen;
 use std::collections::VecDeque;
 
@@ -19,7 +20,7 @@ pub(super) fn smaller(x: f64, y: f64) -> f64 {
 }
 
 /// The largest of some operands from `from` on.
-pub(super) fn any(own: &mut Curve, operands: &[Reader<'_>], from: Moment) {
+pub(super) fn any(own: &mut Stream, operands: &[Reader<'_>], from: Moment) {
     let mut at = from;
     while at < own.end {
         let (mut stop, mut value) = (own.end, NEVER);
@@ -27,14 +28,14 @@ pub(super) fn any(own: &mut Curve, operands: &[Reader<'_>], from: Moment) {
             let (end, one) = operand.around(at);
             (stop, value) = (stop.min(end), larger(value, one));
         }
-        own.push(stop, value);
+        own.extend(stop, value);
         at = stop;
     }
 }
 
 /// The largest that moments from `from` on see of an operand: a sliding maximum (Lemire 2006), whose pieces come
 /// into sight and go out of it in order.
-pub(super) fn slide(own: &mut Curve, operand: Reader<'_>, from: Moment, seen: Seen) {
+pub(super) fn slide(own: &mut Stream, operand: Reader<'_>, from: Moment, seen: Seen) {
     let first = match seen {
         Seen::Within { from: ahead, .. } => from + ahead,
         Seen::Soon { .. } => from,
@@ -55,7 +56,7 @@ pub(super) fn slide(own: &mut Curve, operand: Reader<'_>, from: Moment, seen: Se
         let comes = coming.peek().map_or(own.end, |((comes, _), _)| *comes);
         let (gone, value) = here.front().copied().unwrap_or((own.end, NEVER));
         let stop = comes.min(gone).min(own.end);
-        own.push(stop, value);
+        own.extend(stop, value);
         at = stop;
     }
 }
@@ -63,31 +64,31 @@ pub(super) fn slide(own: &mut Curve, operand: Reader<'_>, from: Moment, seen: Se
 /// The best way to a goal with the first operand until then, from `from` on (Donzé, Ferrère and Maler 2013): of
 /// an unbounded until, worked out from its end, and a largest value of the window.
 pub(super) fn until(
-    own: &mut Curve,
+    own: &mut Stream,
     (first, second): (Reader<'_>, Reader<'_>),
     from: Moment,
     (a, b): (Moment, Moment),
 ) {
     let end = own.end.saturating_add(a);
     let goals = unbounded(first, second, from + a);
-    let mut ways = Curve::new(from + a, end);
+    let mut ways = Stream::new(from + a, end);
     for (stop, value) in goals {
-        ways.push(stop, value);
+        ways.extend(stop, value);
     }
-    ways.push(end, NEVER);
-    let mut found = Curve::new(from + a, end);
+    ways.extend(end, NEVER);
+    let mut found = Stream::new(from + a, end);
     if b == FOREVER {
-        found.push(end, f64::INFINITY);
+        found.extend(end, f64::INFINITY);
     } else {
         slide(&mut found, second, from + a, Seen::Within { from: 0, to: b - a });
     }
     // The first operand up to the window: what fails in it comes sooner.
-    let mut fails = Curve::new(from, own.end);
+    let mut fails = Stream::new(from, own.end);
     if a > 0 {
         let failing = Reader { negated: !first.negated, ..first };
         slide(&mut fails, failing, from, Seen::Soon { within: a, strictly: true });
     } else {
-        fails.push(own.end, NEVER);
+        fails.extend(own.end, NEVER);
     }
     let read = |curve| Reader { curve, negated: false };
     let (ways, found, fails) = (read(&ways), read(&found), read(&fails));
@@ -96,7 +97,7 @@ pub(super) fn until(
         let ((x_end, x), (y_end, y)) = (ways.around(at + a), found.around(at + a));
         let (z_end, z) = fails.around(at);
         let stop = z_end.min(x_end.min(y_end).saturating_sub(a)).min(own.end);
-        own.push(stop, smaller(smaller(x, y), -z));
+        own.extend(stop, smaller(smaller(x, y), -z));
         at = stop;
     }
 }

@@ -6,17 +6,17 @@
 //! an upper bound of a margin, so that the sign is known where the verdict falls.
 
 mod cells;
-mod curve;
 mod fold;
+mod reader;
 
 use super::moment::{Moment, Scale};
 use super::plan::plan_cells;
-use super::present::Present;
 use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
 use crate::base::tick::Tick;
 use crate::logic::formula::{NodeId, Tree};
 use crate::logic::invalid::Invalid;
+use crate::logic::present::Present;
 use cells::Cells;
 
 /// Bounds of a margin: its least and its greatest possible value.

@@ -1,6 +1,6 @@
 //! Measurements on the map of two triangles: coverage, short edges and the narrow passage (Li, Li, Ge 2019, Figures 9 and 10).
 
-use super::super::figures::{hull_area, largest_radius, short_edges};
+use super::figures::{hull_area, largest_radius, short_edges};
 use super::*;
 
 #[test]

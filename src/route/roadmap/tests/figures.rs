@@ -1,11 +1,11 @@
 //! Figures of merit of roadmaps and paths: coverage, short edges and sharp corners (Li, Li, Ge 2019, Figures 9 and 10).
 
-use super::graph::Roadmap;
-use super::rays::unite;
+use super::super::Roadmap;
+use super::super::rays::unite;
 use crate::base::geometry::{Vec2, cross};
 
 /// Area of the convex hull of places, m² (Andrew's monotone chain, 1979).
-pub fn hull_area(places: &[Vec2]) -> f64 {
+pub(super) fn hull_area(places: &[Vec2]) -> f64 {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let chain = |places: &mut dyn Iterator<Item = Vec2>| {
@@ -28,17 +28,17 @@ pub fn hull_area(places: &[Vec2]) -> f64 {
 
 /// Edges of a roadmap by length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShortEdges {
+pub(super) struct ShortEdges {
     /// Edges shorter than the limit.
-    pub shorter: usize,
+    pub(super) shorter: usize,
     /// Edges not longer than the limit, up to rounding.
-    pub at_most: usize,
+    pub(super) at_most: usize,
     /// Edges of the shortest spanning forest (Kruskal 1956) that are shorter than the limit.
-    pub forest: usize,
+    pub(super) forest: usize,
 }
 
 /// Counts the edges of a roadmap that are shorter than `limit`, m.
-pub fn short_edges(roadmap: &Roadmap, limit: f64) -> ShortEdges {
+pub(super) fn short_edges(roadmap: &Roadmap, limit: f64) -> ShortEdges {
     let place = |k: u32| roadmap.vertices().get(k as usize).copied().unwrap_or_default();
     let edges = roadmap.edges().iter();
     let mut lengths: Vec<(f64, u32, u32)> =
@@ -59,7 +59,7 @@ pub fn short_edges(roadmap: &Roadmap, limit: f64) -> ShortEdges {
 
 /// The largest radius, m, of an arc that rounds a corner and uses at most half of each edge:
 /// min(La, Lb) / (2 tan(delta / 2)) with the turning angle delta. Infinite where the path goes straight on.
-pub fn largest_radius(before: Vec2, corner: Vec2, after: Vec2) -> f64 {
+pub(super) fn largest_radius(before: Vec2, corner: Vec2, after: Vec2) -> f64 {
     let (first, second) = (corner - before, after - corner);
     let (a, b) = (first.norm(), second.norm());
     let turn = cross(first, second).abs();
