@@ -8,14 +8,14 @@ use super::outputs::Outputs;
 use super::parts::PartsFolder;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
-use super::{complaint, inputs, output, page};
+use super::{complaint, inputs, output, page, values};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, Threads, forecast, run as run_study};
+use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, forecast, run as run_study};
 use crate::gait;
 use crate::library;
 use crate::model::Scenario;
@@ -94,9 +94,9 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     // Shards of this process are its threads.
     let fewest = shards.filter(|_| is_local).unwrap_or(most);
     let threads = arguments.threads.unwrap_or_else(cores).min(most).min(fewest);
-    let executor = match Threads::new(Some(threads)) {
+    let executor = match values::threads(Some(threads)) {
         Ok(executor) => executor,
-        Err(error) => return reporter.fault(&Fault::Threads(error.to_string())),
+        Err(error) => return reporter.refuse(error),
     };
     let place = |span: Span| locate(&inputs.sources, span);
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
@@ -154,7 +154,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
 fn folder(way: &Way<'_>) -> Result<PartsFolder, Vec<Diagnostic>> {
     let named = match way {
         Way::Merge(folder) if !folder.is_dir() => {
-            return Err(vec![complaint::input(format!("the folder `{}` does not exist", folder.display()))]);
+            return Err(complaint::input(format!("the folder `{}` does not exist", folder.display())).into());
         }
         Way::Merge(folder) => Some(folder.to_path_buf()),
         // What is printed for Kubernetes is run later.
@@ -166,7 +166,7 @@ fn folder(way: &Way<'_>) -> Result<PartsFolder, Vec<Diagnostic>> {
     let is_kept = named.is_some();
     // Other machines find it where they find the model.
     let path = named.unwrap_or_else(|| format!(".smc-parts-{}", std::process::id()).into());
-    PartsFolder::new(path, is_kept).map_err(|error| vec![error])
+    Ok(PartsFolder::new(path, is_kept)?)
 }
 
 fn cores() -> usize {
@@ -208,7 +208,7 @@ impl Reporter<'_> {
         };
         match print(&text) {
             Ok(()) => Exit::Success,
-            Err(reason) => self.refuse(complaint::output(reason)),
+            Err(error) => self.refuse(error),
         }
     }
 
@@ -264,9 +264,9 @@ impl Reporter<'_> {
             ..CallResult::default()
         };
         if self.outputs.screen.is_for_programs()
-            && let Err(reason) = print(&report::render(&run, self.outputs.screen, Palette::PLAIN))
+            && let Err(error) = print(&report::render(&run, self.outputs.screen, Palette::PLAIN))
         {
-            complaint::tell(&complaint::output(reason), &[], self.colors);
+            complaint::tell(&error, &[], self.colors);
         }
         self.write(run, Traces::default());
         Exit::Wrong
@@ -277,10 +277,8 @@ impl Reporter<'_> {
         let mut exit = Exit::Success;
         for (format, path) in &self.outputs.files {
             let text = report::render(&run, *format, Palette::PLAIN);
-            if let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) {
-                complaint::tell(&complaint::unwritten(path, &error), &[], self.colors);
-                exit = Exit::Wrong;
-            }
+            let saved = output::save(path, text.as_bytes());
+            exit = exit.worse(complaint::end(saved.map(|()| Exit::Success), &[], self.colors));
         }
         let Some(path) = &self.outputs.page else { return exit };
         let page = Page { run, sources: self.sources, traces, ..Page::default() };
@@ -299,10 +297,8 @@ impl Reporter<'_> {
         let run = CallResult { inputs, diagnostics, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
-        if let Err(reason) = print(&report::render(&run, self.outputs.screen, palette)) {
-            complaint::tell(&complaint::output(reason), &[], self.colors);
-            exit = exit.worse(Exit::Wrong);
-        }
+        let printed = print(&report::render(&run, self.outputs.screen, palette));
+        exit = exit.worse(complaint::end(printed.map(|()| Exit::Success), &[], self.colors));
         if let Some(error) = &broken {
             complaint::tell(error, self.sources, self.colors);
         }
@@ -371,7 +367,7 @@ fn for_machines(chosen: Format, run: &CallResult) {
 /// The format that a call prints.
 pub(super) fn screen(arguments: &Questions) -> Format {
     let printed = arguments.format.iter().find(|destination| destination.file.is_none());
-    printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format.of())
+    printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format)
 }
 
 /// File and line of a place.
@@ -382,11 +378,6 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 
 /// The files and settings of the call.
 fn line(arguments: &Questions) -> CommandLine {
-    CommandLine {
-        scenario: arguments.model.scenario.clone(),
-        properties: arguments.properties.clone(),
-        settings: arguments.model.set.clone(),
-        data: arguments.model.data.iter().map(|data| data.display().to_string()).collect(),
-        velocity: arguments.velocity.map(|velocity| velocity.name().to_owned()),
-    }
+    let line = page::line(&arguments.model, arguments.velocity);
+    CommandLine { properties: arguments.properties.clone(), ..line }
 }

@@ -18,21 +18,15 @@ const QUIET: f64 = 1000.0;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Drift, colors: Colors) -> Exit {
-    match watch(arguments) {
-        Ok(true) => Exit::Violated,
-        Ok(false) => Exit::Success,
-        Err(error) => {
-            complaint::tell(&error, &[], colors);
-            if arguments.format == DriftFormat::Json {
-                let _ = print_error(&error.title);
-            }
-            Exit::Wrong
-        }
+    let done = watch(arguments);
+    if let (Err(error), DriftFormat::Json) = (&done, arguments.format) {
+        let _ = print_error(&error.title);
     }
+    complaint::end(done.map(|found| if found { Exit::Violated } else { Exit::Success }), &[], colors)
 }
 
 /// Writes an error as an object.
-pub(super) fn print_error(message: &str) -> Result<(), String> {
+pub(super) fn print_error(message: &str) -> Result<(), Diagnostic> {
     let error = json!({ "schema": 1, "error": { "bug": false, "message": message } });
     print(&format!("{error}\n"))
 }
@@ -83,8 +77,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
                 DriftFormat::Json => {
                     format!("{}\n", json!({ "alarm": cusum.read(), "line": outcomes.lines() }))
                 }
-            })
-            .map_err(complaint::output)?;
+            })?;
             if arguments.first || !heard {
                 break;
             }
@@ -93,7 +86,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
     if cusum.read() == 0 {
         return Err(table(format!("{name} contains no outcome")));
     }
-    print(&summary(arguments, &cusum, successes, &alarms)).map_err(complaint::output)?;
+    print(&summary(arguments, &cusum, successes, &alarms))?;
     Ok(!alarms.is_empty())
 }
 

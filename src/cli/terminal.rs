@@ -1,7 +1,9 @@
 //! Standard output and standard error: colours, broken pipes.
 
 use super::arguments::ColorChoice;
+use super::complaint;
 use crate::base::visible::visible;
+use crate::syntax::diagnostic::Diagnostic;
 use std::io::{IsTerminal, Write};
 
 /// Whether output is colored.
@@ -31,17 +33,17 @@ impl Colors {
 }
 
 /// Writes to standard output. A reader that went away is no error.
-pub(super) fn print(text: &str) -> Result<(), String> {
+pub(super) fn print(text: &str) -> Result<(), Diagnostic> {
     print_to_reader(text).map(|_| ())
 }
 
 /// Writes to standard output; false where its reader went away.
-pub(super) fn print_to_reader(text: &str) -> Result<bool, String> {
+pub(super) fn print_to_reader(text: &str) -> Result<bool, Diagnostic> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
-        Err(error) => Err(format!("standard output: {error}")),
+        Err(error) => Err(complaint::output(format!("standard output: {error}"))),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::arguments::{EvaluateCommand, EvaluateFormat};
 use super::{Call, Exit};
-use crate::cli::complaint;
 use crate::cli::terminal::Colors;
+use crate::cli::{complaint, output};
 use crate::gait;
 use crate::model::Scenario;
 use crate::replay::{
@@ -31,7 +31,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     let instants = eligible(replay, call.instants.clone(), *every, arguments.speed, PREDICTED);
     if instants.is_empty() {
         let said = format!("nobody moves and is seen for the next {PREDICTED} s at any instant");
-        return Err(vec![complaint::argument(said, "choose other times, or a smaller `--speed`")]);
+        return Err(complaint::argument(said, "choose other times, or a smaller `--speed`").into());
     }
     let mut kinds = arguments.kinds.clone();
     if kinds.is_empty() {
@@ -40,11 +40,8 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         kinds.extend(arguments.realism.then(|| LANGEVIN.to_owned()));
     }
     kinds.dedup();
-    let options = Evaluating {
-        trials: arguments.trials,
-        seed: arguments.replayed.seed,
-        beyond: arguments.beyond.into(),
-    };
+    let options =
+        Evaluating { trials: arguments.trials, seed: arguments.replayed.seed, beyond: arguments.beyond };
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
     let (mut found, mut realisms) = (Vec::new(), Vec::new());
@@ -97,13 +94,9 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         EvaluateFormat::Text => Ok(to_text(&evaluated)),
         EvaluateFormat::Json => Ok(to_json(&evaluated)),
         EvaluateFormat::Svg => {
-            to_svg(&evaluated).map_err(|flaw| vec![complaint::argument(flaw.message, flaw.hint)])
+            Ok(to_svg(&evaluated).map_err(|flaw| complaint::argument(flaw.message, flaw.hint))?)
         }
-        EvaluateFormat::Csv => {
-            let mut out = Vec::new();
-            write_csv(&mut out, &evaluated).map_err(|error| vec![complaint::output(error.to_string())])?;
-            Ok(String::from_utf8_lossy(&out).into_owned())
-        }
+        EvaluateFormat::Csv => Ok(output::table(|out| write_csv(out, &evaluated))?),
     }
 }
 

@@ -88,11 +88,6 @@ struct Html {
     replay: String,
 }
 
-/// The page of a run without traces.
-pub fn render(run: &CallResult) -> String {
-    page(Page { run: run.clone(), ..Page::default() })
-}
-
 /// A page.
 pub fn page(page: Page<'_>) -> String {
     let Page { run, sources, mut tables, traces, without_crowd } = page;
