@@ -143,6 +143,11 @@ pub struct QueryResult {
 }
 
 impl QueryResult {
+    /// The estimate with its interval, if there is one.
+    pub fn value(&self) -> Option<Interval> {
+        Some(Interval { estimate: self.estimate?, low: self.low, high: self.high })
+    }
+
     /// A result without numbers yet: what is known before the first trial.
     pub fn new(asked: AskedQuery) -> Self {
         Self {

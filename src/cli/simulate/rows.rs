@@ -8,7 +8,7 @@ use crate::cli::end::early_end;
 use crate::data::table::{Column, Kind, Table, Value};
 use crate::engine::no_start;
 use crate::kernel::{Address, End, Program, Run, Slot, State};
-use crate::model::{AgentId, Domain, Obstacle, Parameter, Scenario};
+use crate::model::{AgentId, Domain, Parameter, Scenario};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -37,18 +37,14 @@ pub(super) fn table(scenario: &Scenario, seed: u64, every: u64) -> Table {
         let with_states = behaviours.filter(|behaviour| !behaviour.states.is_empty());
         columns.extend(with_states.map(|behaviour| Column::new(&behaviour.name, Kind::Word)));
     }
-    let barriers = || scenario.scene.barriers.iter().map(|barrier| &barrier.obstacle);
-    let walls = barriers().filter_map(|one| if let Obstacle::Wall(parts) = one { Some(parts) } else { None });
-    let solids =
-        barriers().filter_map(|one| if let Obstacle::Solid(shape) = one { Some(shape) } else { None });
     Table {
         columns,
         scenario: scenario.title.clone(),
         seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         interval: if scenario.clock.is_jumps() { 0.0 } else { scenario.clock.step_seconds() * every as f64 },
-        walls: walls.flatten().copied().collect(),
-        solids: solids.cloned().collect(),
+        walls: scenario.scene.walls().copied().collect(),
+        solids: scenario.scene.solids().cloned().collect(),
     }
 }
 

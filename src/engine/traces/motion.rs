@@ -6,6 +6,7 @@ use crate::base::tick::{Clock, Tick};
 use crate::kernel::plan::Plan;
 use crate::kernel::{Slot, State};
 use crate::model::{AgentId, Parameter, Period, Scenario};
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Time between two frames, s: the largest whole number of steps that is not longer, but one step at least.
@@ -42,7 +43,7 @@ pub struct Motion {
 }
 
 /// An agent from coming in to leaving.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Track {
     /// Its number in the scenario.
     pub agent: usize,
@@ -53,17 +54,19 @@ pub struct Track {
     /// The first frame.
     pub first: usize,
     /// Where it was from that frame on.
+    #[serde(flatten, serialize_with = "differences")]
     pub points: Vec<Millimetres>,
 }
 
 /// What an agent plans from a frame on; no points where it goes without a plan again.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlannedWay {
     /// Its number in the scenario.
     pub agent: usize,
     /// The first frame.
     pub first: usize,
     /// The points of the way.
+    #[serde(flatten, serialize_with = "differences")]
     pub points: Vec<Millimetres>,
 }
 
@@ -76,6 +79,15 @@ pub struct Membership {
     pub agent: usize,
     /// Number of the group; in none for `None`.
     pub group: Option<u64>,
+}
+
+/// The first place, then the differences, as `x` and `y`: they are short to write.
+fn differences<S: Serializer>(points: &[Millimetres], to: S) -> Result<S::Ok, S::Error> {
+    let of = |axis: usize| -> Vec<i32> {
+        let before = std::iter::once(0).chain(points.iter().map(|point| point[axis]));
+        points.iter().zip(before).map(|(point, before)| point[axis] - before).collect()
+    };
+    to.collect_map([("x", of(0)), ("y", of(1))])
 }
 
 pub(super) fn millimetres(place: Vec2) -> Millimetres {

@@ -1,7 +1,7 @@
 //! Evaluated predictions for people.
 
 use super::{CONSTANT, Coverage, Evaluated, EvaluatedKind, EvaluatedProperty};
-use crate::report::number::{count, counted, estimated, plain};
+use crate::report::number::{count, counted, estimated, plain, thousandths};
 use crate::report::text::columns::table;
 use crate::stats::{Estimate, Quality};
 use std::fmt::Write as _;
@@ -108,7 +108,7 @@ fn terms(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
             score.within_bin_variance,
             score.within_bin_covariance,
         ];
-        let [a, b, c, d, e, f] = terms.map(|term| format!("{:.3}", (1e3 * term).round() / 1e3 + 0.0));
+        let [a, b, c, d, e, f] = terms.map(|term| format!("{:.3}", thousandths(term)));
         [kind.name.clone(), a, b, c, d, e, f]
     };
     let rows: Vec<_> = kinds

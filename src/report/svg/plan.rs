@@ -69,10 +69,7 @@ pub fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing
         Position::Within(shape) => Some(shape.bounds()),
         _ => None,
     });
-    let barriers = scene.barriers.iter().filter_map(|barrier| match &barrier.obstacle {
-        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
-        Obstacle::Solid(shape) => Some(shape.bounds()),
-    });
+    let barriers = scene.barriers.iter().filter_map(|barrier| barrier.obstacle.bounds());
     let corners = shapes.chain(starts).chain(barriers).flat_map(|b| [b.low, b.high]);
     let ends = scene.lines.iter().flat_map(|line| [line.segment.a, line.segment.b]);
     let all = corners.chain(ends).chain(scene.points.iter().map(|(_, point)| *point)).chain(points);

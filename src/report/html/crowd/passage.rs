@@ -6,7 +6,7 @@ use super::moments::place;
 use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
 use crate::model::Line;
-use crate::report::number::{brief, counted, plain};
+use crate::report::number::{brief, counted, plain, thousandths};
 use crate::report::svg::frame::{Frame, part_of_page};
 use crate::report::svg::scale::Scale;
 
@@ -60,7 +60,7 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
         caption += &format!("; flow from the first to the last crossing: {}", spread(&flows, " 1/s"));
         let width = line.segment.length();
         let wide: Vec<f64> = flows.iter().map(|flow| flow / width).collect();
-        caption += &format!(", on {} m: {}.", plain((width * 1e3).round() / 1e3), spread(&wide, " 1/(m s)"));
+        caption += &format!(", on {} m: {}.", plain(thousandths(width)), spread(&wide, " 1/(m s)"));
     }
     if traces.len() > 1 {
         caption += &format!(
