@@ -254,14 +254,10 @@ impl Reporter<'_> {
     /// A report of a run that never began, in formats for machines; people have read it already.
     fn hand_out(mut self, reason: String) -> Exit {
         let run = CallResult {
-            scenario: self.arguments.model.scenario.clone(),
-            seed: self.arguments.seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
             inputs: std::mem::take(&mut self.prints),
             diagnostics: std::mem::take(&mut self.findings),
             failure: Some(Failure::Input(reason)),
-            replay: format!("{} --seed {}", line(self.arguments).check(), self.arguments.seed),
-            ..CallResult::default()
+            ..blank(self.arguments)
         };
         if self.outputs.screen.is_for_programs()
             && let Err(error) = print(&report::render(&run, self.outputs.screen, Palette::PLAIN))
@@ -308,13 +304,7 @@ impl Reporter<'_> {
 
 /// Reports that a call ended before its first trial, on standard error and in formats for machines.
 fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
-    let run = CallResult {
-        scenario: arguments.model.scenario.clone(),
-        seed: arguments.seed,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        replay: format!("{} --seed {}", line(arguments).check(), arguments.seed),
-        ..CallResult::default()
-    };
+    let run = blank(arguments);
     let chosen = screen(arguments);
     move |ended| {
         let mut run = run.clone();
@@ -341,21 +331,22 @@ fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clon
 pub(super) fn misused(chosen: Format, message: &str) {
     let error = Diagnostic::placeless(Code::E0705, message);
     let run = CallResult {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
         diagnostics: inputs::findings(&[error], &[]),
         failure: Some(Failure::Input(message.to_owned())),
-        ..CallResult::default()
+        ..CallResult::of("", 0)
     };
     for_machines(chosen, &run);
 }
 
 /// A report of a call that ended without results, in formats for machines.
 pub(super) fn without_results(chosen: Format, scenario: String, seed: u64, failure: Failure) {
-    let version = env!("CARGO_PKG_VERSION").to_owned();
-    for_machines(
-        chosen,
-        &CallResult { scenario, seed, version, failure: Some(failure), ..CallResult::default() },
-    );
+    for_machines(chosen, &CallResult { failure: Some(failure), ..CallResult::of(scenario, seed) });
+}
+
+/// What is known of a call before its first trial.
+fn blank(arguments: &Questions) -> CallResult {
+    let replay = format!("{} --seed {}", line(arguments).check(), arguments.seed);
+    CallResult { replay, ..CallResult::of(&arguments.model.scenario, arguments.seed) }
 }
 
 fn for_machines(chosen: Format, run: &CallResult) {

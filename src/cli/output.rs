@@ -126,7 +126,7 @@ pub(super) fn guard_all(outputs: &[Option<&Path>], inputs: &[PathBuf]) -> Result
 }
 
 /// Whether two names stand for one file.
-pub(super) fn is_same(one: &Path, other: &Path) -> bool {
+fn is_same(one: &Path, other: &Path) -> bool {
     let (Ok(of_one), Ok(of_other)) = (std::fs::metadata(one), std::fs::metadata(other)) else { return false };
     of_one.is_file() && of_other.is_file() && is_same_file((one, &of_one), (other, &of_other))
 }

@@ -78,13 +78,8 @@ impl Trials<'_> {
             }
         }
         let title = &program.scenario.title;
-        let run = CallResult {
-            scenario: if title.is_empty() { scenario.to_owned() } else { title.clone() },
-            seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            replay,
-            ..CallResult::default()
-        };
+        let title = if title.is_empty() { scenario } else { title };
+        let run = CallResult { replay, ..CallResult::of(title, seed) };
         exit.worse(write(path, Page { run, sources, traces, ..Page::default() }, colors))
     }
 }

@@ -4,8 +4,17 @@ use crate::data::tracks::Velocity;
 use crate::engine::{Fault, Threads};
 use crate::library;
 use crate::syntax::diagnostic::Diagnostic;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+
+/// A text or JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum TextFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
 
 /// The model, and the values set in it.
 #[derive(Args, Clone, Debug)]

@@ -21,11 +21,6 @@ impl Costs {
         self.values[row * self.columns + column]
     }
 
-    /// The largest cost; 0 without any.
-    pub fn largest(&self) -> f64 {
-        self.values.iter().copied().fold(0.0, f64::max)
-    }
-
     /// The column of each row, such that the sum is least; as many pairs as the smaller side has members. Ties are
     /// broken in the order of rows and columns.
     pub fn assign(&self) -> Vec<Option<usize>> {

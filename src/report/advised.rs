@@ -47,13 +47,7 @@ pub fn to_page(advised: Advised, sources: &[Source]) -> Page<'_> {
         warnings.push(format!("the player leaves out {} observations without an id", count(unnamed)));
     }
     Page {
-        run: CallResult {
-            scenario: title,
-            seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            warnings,
-            ..CallResult::default()
-        },
+        run: CallResult { warnings, ..CallResult::of(title, seed) },
         sources,
         tables,
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },

@@ -1,10 +1,11 @@
 //! `smc gait fit` and `smc gait score`.
 
-use super::arguments::{FitCommand, Learning, Reading, ScoreCommand, TextFormat};
+use super::arguments::{FitCommand, Learning, Reading, ScoreCommand};
 use super::takes::Takes;
 use super::{Stop, open, told};
 use crate::base::visible::visible;
 use crate::cli::terminal::{Colors, print};
+use crate::cli::values::TextFormat;
 use crate::cli::{complaint, output};
 use crate::gait::RecordedStep;
 use crate::gait::model::{self, FitError, Method, Options, Scores, Warning};

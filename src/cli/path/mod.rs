@@ -11,8 +11,6 @@ use super::output;
 use super::page::{self, Trials};
 use super::terminal::{Colors, warn};
 use super::values::Model;
-use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::random::TrialKey;
 use crate::gait;
 use crate::kernel::{Program, Run, State};
@@ -162,7 +160,7 @@ fn told(paths: &[PlannedPath]) -> String {
 fn run_limits(state: &State, scenario: &Scenario, name: &str) -> Option<Limits> {
     let id = scenario.agents.iter().position(|agent| agent.name == name)?;
     let slot = state.slot(id, 0);
-    let of = |parameter| state.bodies[parameter][slot.block].0[slot.lane];
+    let of = |parameter| slot.of(&state.bodies[parameter]);
     Some(Speeds::new(of, 1.0, SpeedRule::Optimal).limits)
 }
 
@@ -177,16 +175,12 @@ fn wish<'a>(
     let agent = &scenario.agents[id.0 as usize];
     let Route::Legs { legs, .. } = &agent.route else { return None };
     let slot = state.slot(id.0 as usize, 0);
-    let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
-    let of = |parameter: Parameter| at(&state.bodies[parameter]);
+    let of = |parameter: Parameter| slot.of(&state.bodies[parameter]);
     Some(Wish {
         scenario,
         agent: id,
         address: (key, agent.entity, 0),
-        motion: (
-            Vec2::new(at(&state.motion.x), at(&state.motion.y)),
-            Vec2::new(at(&state.motion.vx), at(&state.motion.vy)),
-        ),
+        motion: (state.position(slot), state.velocity(slot)),
         legs,
         speeds: Speeds::new(of, of(Parameter::Speed), agent.body.planner.as_ref()?.profile),
         path,

@@ -143,15 +143,20 @@ impl Persons {
         Quality::of(&all, pair.as_ref().map(|[own, other]| [own, other]), bootstrap)
     }
 
+    /// The sum over all persons of something, over the sum of its weights.
+    fn ratio(&self, parts: impl Iterator<Item = (u32, f64, f64)>, bootstrap: &Bootstrap) -> Option<Estimate> {
+        let mut sums = vec![[0.0, 0.0]; self.numbers.len()];
+        for (person, one, weight) in parts {
+            let sum = &mut sums[self.number(person) as usize];
+            *sum = [sum[0] + one, sum[1] + weight];
+        }
+        bootstrap.estimate(ratio(&sums))
+    }
+
     fn displacement(&self, found: &Predicted, bootstrap: &Bootstrap) -> Displacement {
         type One = crate::replay::Displacement;
-        let mean = |of: fn(&One) -> f64| -> Option<Estimate> {
-            let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
-            for one in &found.displacements {
-                let part = &mut parts[self.number(one.person) as usize];
-                (part[0], part[1]) = (part[0] + of(one), part[1] + 1.0);
-            }
-            bootstrap.estimate(ratio(&parts))
+        let mean = |of: fn(&One) -> f64| {
+            self.ratio(found.displacements.iter().map(|one| (one.person, of(one), 1.0)), bootstrap)
         };
         Displacement {
             mean_ade: mean(|one| one.average),
@@ -170,12 +175,8 @@ impl Persons {
         bootstrap: &Bootstrap,
     ) -> Vec<(&'static str, Option<Estimate>)> {
         let of = |(k, name): (usize, &&'static str)| {
-            let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
-            for (person, sums, steps) in found {
-                let part = &mut parts[self.number(*person) as usize];
-                (part[0], part[1]) = (part[0] + sums[k], part[1] + *steps as f64);
-            }
-            (*name, bootstrap.estimate(ratio(&parts)))
+            let parts = found.iter().map(|(person, sums, steps)| (*person, sums[k], *steps as f64));
+            (*name, self.ratio(parts, bootstrap))
         };
         if found.is_empty() { Vec::new() } else { FEATURES.iter().enumerate().map(of).collect() }
     }
@@ -183,13 +184,8 @@ impl Persons {
     fn coverage(&self, found: &Predicted, bootstrap: &Bootstrap) -> Vec<Coverage> {
         let after = |(k, seconds): (usize, &f64)| {
             let mean = |of: fn(&Fit) -> f64| {
-                let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
-                for (person, fits) in &found.fits {
-                    let Some(fit) = &fits[k] else { continue };
-                    let part = &mut parts[self.number(*person) as usize];
-                    (part[0], part[1]) = (part[0] + of(fit), part[1] + 1.0);
-                }
-                bootstrap.estimate(ratio(&parts))
+                let known = found.fits.iter().filter_map(|(person, fits)| Some((*person, fits[k].as_ref()?)));
+                self.ratio(known.map(|(person, fit)| (person, of(fit), 1.0)), bootstrap)
             };
             let (share, log_density) = (mean(|fit| f64::from(fit.inside)), mean(|fit| fit.log_density));
             Coverage { seconds: *seconds, share, log_density }

@@ -1,8 +1,7 @@
 //! `smc simulate`: traces of trials as tables.
 
 pub(super) mod choice;
-mod destination;
-pub(super) mod format;
+pub(super) mod destination;
 mod keep;
 mod option;
 mod rows;

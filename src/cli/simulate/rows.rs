@@ -1,7 +1,5 @@
 //! Trials as rows of a table: one for each agent in each state, or for each state where there are no agents.
 
-use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
 use crate::cli::end::early_end;
@@ -176,12 +174,9 @@ impl<'p> Rows<'p> {
             None => scenario.agents[agent].name.as_str().into(),
         }));
         if let Some(slot) = slot {
-            let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
-            let motion = &state.motion;
-            let velocity = Vec2::new(at(&motion.vx), at(&motion.vy));
-            let numbers = [at(&motion.x), at(&motion.y), velocity.x, velocity.y, velocity.norm()];
-            row.extend(numbers.map(Value::Number));
-            row.extend([Value::Truth(true), Value::Number(at(&state.bodies[Parameter::Radius]))]);
+            let (at, velocity) = (state.position(slot), state.velocity(slot));
+            row.extend([at.x, at.y, velocity.x, velocity.y, velocity.norm()].map(Value::Number));
+            row.extend([Value::Truth(true), Value::Number(slot.of(&state.bodies[Parameter::Radius]))]);
         } else {
             row.extend([const { Value::Missing }; 5]);
             row.extend([Value::Truth(false), Value::Missing]);
@@ -207,7 +202,7 @@ impl<'p> Iterator for Rows<'p> {
             self.agent = (agent + 1) % agents;
             let state = self.run.state();
             let slot = state.slot(agent, 0);
-            let slot = state.present[slot.block].has(slot.lane).then_some(slot);
+            let slot = state.is_present(slot).then_some(slot);
             // An agent of a source, which keeps many more places than are taken, has rows while it is in the scene.
             if slot.is_some() || !self.program.arrivals.comes(agent) {
                 return Some(self.row(trial, agent, slot));
@@ -226,7 +221,7 @@ fn modes<'p>(program: &'p Program, state: &State, slot: Option<Slot>) -> Vec<Val
         .filter(|(_, behaviour)| !behaviour.states.is_empty())
         .map(|(k, behaviour)| {
             let here = modes.get(k).zip(slot);
-            let mode = here.map_or(-1.0, |(modes, slot)| modes[slot.block].0[slot.lane]);
+            let mode = here.map_or(-1.0, |(modes, slot)| slot.of(modes));
             // Nobody is in a state with a negative number.
             let name = if mode < 0.0 { None } else { behaviour.states.get(mode as usize) };
             name.map_or(Value::Missing, |name| Value::Word(name.as_str().into()))

@@ -43,8 +43,8 @@ pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
                     let word = words(&piece.text[at..]).next().map_or("", |(_, word)| word);
                     let (line, column) = after((piece.line, piece.column), &piece.text[..at]);
                     let message = format!("the text is not WKT: `{word}` is not a number");
-                    let (line, column) = (Some(line), Some(column));
-                    errors.push(GeometryError { line, column, feature: None, message });
+                    let place = FilePlace { line: Some(line), column: Some(column), feature: None };
+                    errors.push(place.error(message));
                 }
                 None => fail(format!("the text is not WKT: {}", lower_case_start(message))),
             },
@@ -209,7 +209,8 @@ mod tests {
     fn every_fault_has_its_place() {
         let text = "POINT (1 2)\n  POINT (1 oops)\nPOLYGON ((0 0, 1 1, 0 0)) POINT (1e999 0)\nLINESTRING (0 0,\n 3 x) SRID";
         let errors = read_wkt(text).unwrap_err();
-        let places: Vec<_> = errors.iter().map(|e| (e.line.unwrap(), e.column.unwrap())).collect();
+        let places: Vec<_> =
+            errors.iter().map(|e| (e.place.line.unwrap(), e.place.column.unwrap())).collect();
         assert_eq!(places, [(2, 12), (3, 1), (3, 27), (5, 4), (5, 7)]);
         assert_eq!(errors[0].message, "the text is not WKT: `oops` is not a number");
         assert_eq!(errors[3].message, "the text is not WKT: `x` is not a number");

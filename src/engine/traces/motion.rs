@@ -1,7 +1,6 @@
 //! Where the agents of a trial were: positions in whole millimetres at evenly spaced states.
 
 use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::plan::Plan;
 use crate::kernel::{Slot, State};
@@ -141,12 +140,11 @@ impl Motion {
 
     fn see_agent(&mut self, scenario: &Scenario, state: &State, agent: usize) {
         let slot = state.slot(agent, 0);
-        if !state.present[slot.block].has(slot.lane) {
+        if !state.is_present(slot) {
             self.open[agent] = None;
             return;
         }
-        let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
-        let place = millimetres(Vec2::new(at(&state.motion.x), at(&state.motion.y)));
+        let place = millimetres(state.position(slot));
         let person = state.queues.later(agent, 0);
         self.numbers += 2;
         match self.open[agent] {
@@ -154,12 +152,11 @@ impl Motion {
                 self.tracks[track].points.push(place);
             }
             _ => {
-                let arrival = state.queues.arrival(&scenario.sources, AgentId(agent as u32), 0);
                 self.open[agent] = Some((self.tracks.len(), person));
                 self.tracks.push(Track {
                     agent,
-                    name: arrival.unwrap_or_else(|| scenario.agents[agent].name.clone()),
-                    radius: (at(&state.bodies[Parameter::Radius]) * 1000.0).round() as i32,
+                    name: state.name_of(scenario, AgentId(agent as u32), 0),
+                    radius: (slot.of(&state.bodies[Parameter::Radius]) * 1000.0).round() as i32,
                     first: self.frames,
                     points: vec![place],
                 });

@@ -148,6 +148,10 @@ impl SyntheticGait {
     }
 
     /// A step that turns by an angle (rad, to the left) before noise.
+    pub fn toward(&self, before: &Stance, foot: Foot, share: f64, turn: f64, draws: Draws) -> Stance {
+        self.step_from(&self.entry(before), before, foot, share, turn, draws)
+    }
+
     fn step_from(
         &self,
         entry: &Entry,

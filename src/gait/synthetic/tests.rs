@@ -45,13 +45,9 @@ fn chain(count: u32, next: impl Fn(u32, &Stance, Foot) -> Stance) -> Vec<Made> {
     made
 }
 
-fn toward(gait: &SyntheticGait, before: &Stance, foot: Foot, share: f64, turn: f64, draws: Draws) -> Stance {
-    gait.step_from(&gait.entry(before), before, foot, share, turn, draws)
-}
-
 fn straight(gait: &SyntheticGait, share: f64, count: u32, index: u64) -> Vec<Made> {
     chain(count, |number, before, foot| {
-        toward(gait, before, foot, share, 0.0, Draws::of(stream(index), number, 0))
+        gait.toward(before, foot, share, 0.0, Draws::of(stream(index), number, 0))
     })
 }
 
@@ -141,7 +137,7 @@ fn a_long_straight_chain_stays_straight_at_the_speed_of_the_person() {
         let whole = last.begin + last.chord() - first.begin;
         assert!(angle(whole).abs() < 0.02, "{}", angle(whole));
         let time: f64 = made[1..].iter().map(|m| m.shape.duration).sum();
-        speeds.push((whole - first.chord()).norm() / time / gait.person().speed);
+        speeds.push((whole - first.chord()).norm() / time / gait.person.speed);
         spread.extend(made.iter().map(|m| angle(m.chord()).to_degrees()));
     }
     let (speed, cv) = mean_and_cv(speeds.into_iter());
@@ -158,7 +154,7 @@ fn turns_keep_their_limits_and_reach_them() {
         let mut widest = 0.0f64;
         for index in 0..400 {
             let before =
-                toward(&gait, &Stance::default(), Foot::Left, share, 0.0, Draws::of(stream(index), 0, 0));
+                gait.toward(&Stance::default(), Foot::Left, share, 0.0, Draws::of(stream(index), 0, 0));
             for candidate in 0..24 {
                 let after = gait.step(&before, Foot::Right, share, Draws::of(stream(index), 1, candidate));
                 let frame = after.last.unwrap().1.curve().tangent(1.0);
@@ -179,7 +175,7 @@ fn the_best_of_24_turns_by_90_degrees_in_three_steps() {
         let made = chain(7, |number, before, foot| {
             let draws = |candidate| Draws::of(stream(index), number, candidate);
             if !(3..6).contains(&number) {
-                return toward(&gait, before, foot, 1.0, 0.0, draws(0));
+                return gait.toward(before, foot, 1.0, 0.0, draws(0));
             }
             let left = |s: &Stance| angle(s.last.unwrap().1.landmarks[SPANS - 1]);
             (0..24)
@@ -203,7 +199,7 @@ fn the_direction_of_walking_turns_by_what_is_asked() {
         for index in 0..400 {
             let made = chain(8, |number, before, foot| {
                 let turn = if number == 4 { degrees.to_radians() } else { 0.0 };
-                toward(&gait, before, foot, 1.0, turn, Draws::of(stream(index), number, 0))
+                gait.toward(before, foot, 1.0, turn, Draws::of(stream(index), number, 0))
             });
             // Chords 3 and 5 are straight steps before and after the turn.
             let (a, b) = (made[3].chord(), made[5].chord());
@@ -220,7 +216,7 @@ fn the_direction_of_walking_turns_by_what_is_asked() {
         assert!((slowing(degrees.to_radians()) - speed / 1.30).abs() < 0.015, "{degrees}");
     }
     assert_eq!(SyntheticGait::widest(&gait.entry(&Stance::default())), PI / 2.0);
-    let walking = toward(&gait, &Stance::default(), Foot::Left, 1.0, 0.0, Draws::of(stream(0), 0, 0));
+    let walking = gait.toward(&Stance::default(), Foot::Left, 1.0, 0.0, Draws::of(stream(0), 0, 0));
     assert!((SyntheticGait::widest(&gait.entry(&walking)).to_degrees() - 50.0).abs() < 1e-9);
 }
 

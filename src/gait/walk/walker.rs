@@ -27,11 +27,6 @@ impl Walker {
         Self { at, heading, ..Self::default() }
     }
 
-    /// How many steps are already chosen.
-    pub fn planned(&self) -> usize {
-        self.planned.len()
-    }
-
     /// Forgets the steps that were chosen, for example for a new goal.
     pub fn forget_planned(&mut self) {
         self.planned.clear();

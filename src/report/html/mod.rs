@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn nothing_gets_out_of_its_element() {
         let run = CallResult { scenario: "</title><img a='x' b=\"y\">".into(), ..CallResult::default() };
-        let page = render(&run);
+        let page = page(Page { run, ..Page::default() });
         assert!(!page.contains("<img") && page.contains("&#60;img"), "{page}");
     }
 }
