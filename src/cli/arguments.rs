@@ -9,6 +9,7 @@ use super::plot::PlotCommand;
 use super::replay::{EvaluateCommand, FitCommand, MonitorCommand};
 use super::simulate::choice::Keep;
 use super::simulate::destination::left_out;
+use super::terminal::ColorChoice;
 use super::values::{
     Model, TextFormat, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
 };
@@ -33,17 +34,6 @@ pub(super) struct Arguments {
     /// When to color the output.
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub(super) color: ColorChoice,
-}
-
-/// When to colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ColorChoice {
-    /// On a terminal.
-    Auto,
-    /// Always.
-    Always,
-    /// Never.
-    Never,
 }
 
 /// Verbs.

@@ -1,10 +1,21 @@
 //! Standard output and standard error: colours, broken pipes.
 
-use super::arguments::ColorChoice;
 use super::complaint;
 use crate::base::visible::visible;
 use crate::syntax::diagnostic::Diagnostic;
+use clap::ValueEnum;
 use std::io::{IsTerminal, Write};
+
+/// When to colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ColorChoice {
+    /// On a terminal.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
 
 /// Whether output is colored.
 #[derive(Clone, Copy, Debug)]
