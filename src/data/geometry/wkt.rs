@@ -9,19 +9,8 @@ use wkt::types::{Coord, LineString, Polygon};
 /// Deepest nesting of parentheses; beyond it the text is refused before it is parsed.
 const DEEPEST: usize = 64;
 /// The content of parentheses other than numbers.
-const WORDS: [&str; 11] = [
-    "point",
-    "linestring",
-    "polygon",
-    "multipoint",
-    "multilinestring",
-    "multipolygon",
-    "geometrycollection",
-    "empty",
-    "z",
-    "m",
-    "zm",
-];
+const WORDS: &str =
+    "point linestring polygon multipoint multilinestring multipolygon geometrycollection empty z m zm";
 
 /// Reads all geometries, as features without name and properties. Empty ones are passed over.
 ///
@@ -96,7 +85,7 @@ fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
 /// Where within its parentheses a geometry has something that is neither a number nor a word of this language.
 fn no_number(text: &str) -> Option<usize> {
     let open = text.find('(')?;
-    let known = |word: &str| WORDS.iter().any(|known| known.eq_ignore_ascii_case(word));
+    let known = |word: &str| WORDS.split(' ').any(|known| known.eq_ignore_ascii_case(word));
     let (at, _) = words(&text[open..]).find(|(_, word)| word.parse::<f64>().is_err() && !known(word))?;
     Some(open + at)
 }

@@ -1,7 +1,7 @@
 //! Who crossed a line, over time: N(t), its mean and range over the traces, and the flow. A line is crossed as the
 //! language's `crossings(L)` counts it, each person once; the ways between the states of a trace are straight.
 
-use super::figure::{Figure, brief_name};
+use super::figure::Figure;
 use super::moments::place;
 use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
@@ -10,6 +10,8 @@ use crate::report::number::{brief, counted, plain, thousandths};
 use crate::report::svg::frame::{Frame, part_of_page};
 use crate::report::svg::scale::Scale;
 
+/// Letters of a name.
+const MOST_LETTERS: usize = 60;
 /// Points of a curve.
 const POINTS: u32 = 240;
 
@@ -45,6 +47,12 @@ fn spread(numbers: &[f64], unit: &str) -> String {
 fn range(numbers: &[f64]) -> [f64; 2] {
     let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
     [low, numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// A name as it is shown: very long ones are cut.
+fn brief_name(name: &str) -> String {
+    let start: String = name.chars().take(MOST_LETTERS).collect();
+    if start.len() < name.len() { format!("`{start}…`") } else { format!("`{start}`") }
 }
 
 /// The curve of a line.
