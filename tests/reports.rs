@@ -5,6 +5,7 @@ use smc::engine::outcome::{
     Interval, Kind, Method, Quantile, QueryResult, RankedOption, Ranking, Shows, Side, Status, Step, Stop,
     Verdict, Witness,
 };
+use smc::report::html::{Page, page};
 use smc::report::{ExitCode, Format, Palette, exit_code, json, render};
 
 fn counts(successes: u64, failures: u64, unresolved: u64) -> Counts {
@@ -443,8 +444,7 @@ fn what_lies_above_a_histogram_has_one_name() {
             ..result(asked(0, Kind::Estimate, query))
         }];
         let run = CallResult { results, ..CallResult::default() };
-        for format in [Format::Text, Format::Html] {
-            let text = render(&run, format, Palette::PLAIN);
+        for text in [render(&run, Format::Text, Palette::PLAIN), page_of(run)] {
             assert!(text.contains(&format!("349 {word}")), "{text}");
             assert!(text.contains("17 at -∞"), "{text}");
         }
@@ -476,9 +476,13 @@ fn the_exit_code_is_that_of_the_worst_check() {
     assert_eq!(exit_code(&run), ExitCode::Success);
 }
 
+fn page_of(run: CallResult) -> String {
+    page(Page { run, ..Page::default() })
+}
+
 #[test]
 fn html() {
-    let page = render(&run(), Format::Html, Palette::PLAIN);
+    let page = page_of(run());
     // The template has its own files for the script and the style.
     let between = |page: String, name: &str| {
         let (before, rest) = page.split_once(&format!("<{name}>")).unwrap();
@@ -494,7 +498,7 @@ fn html() {
 /// Every element is closed in order, and nothing is loaded from elsewhere.
 #[test]
 fn html_is_well_nested_and_stands_alone() {
-    let page = render(&run(), Format::Html, Palette::PLAIN);
+    let page = page_of(run());
     // The script and the style hold no elements; what they may do is said by their hashes.
     let mut elements = page.clone();
     for name in ["script", "style"] {

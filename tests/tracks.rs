@@ -294,7 +294,7 @@ proptest! {
         let text = parts.join(" ");
         if let Err(errors) = read_wkt(&text) {
             prop_assert!(!errors.is_empty());
-            prop_assert!(errors.iter().all(|e| e.line.is_some_and(|line| line <= text.lines().count())));
+            prop_assert!(errors.iter().all(|e| e.place.line.is_some_and(|line| line <= text.lines().count())));
         }
     }
 
@@ -312,7 +312,7 @@ proptest! {
             Ok(drawing) => planned(drawing.features),
             Err(errors) => {
                 prop_assert!(!errors.is_empty());
-                prop_assert!(errors.iter().all(|e| e.line.is_some_and(|line| line <= text.lines().count())));
+                prop_assert!(errors.iter().all(|e| e.place.line.is_some_and(|line| line <= text.lines().count())));
             }
         }
     }

@@ -5,7 +5,6 @@ use super::place::{fit, unit};
 use super::role::Role;
 use super::sight::{Followed, followed, seen};
 use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Ask, Query, Study};
 use crate::compile::{Files, Input, examine};
@@ -138,9 +137,7 @@ impl<'a> Adviser<'a> {
         let (mut run, _) = Run::of(&program, Address { key: *key, advice: *advice, changes: &[] }).ok()?;
         let at = |state: &State| {
             let slot = state.slot(*agent, 0);
-            let of = |field: &[Lanes]| field[slot.block].0[slot.lane];
-            let motion = &state.motion;
-            (Vec2::new(of(&motion.x), of(&motion.y)), Vec2::new(of(&motion.vx), of(&motion.vy)))
+            (state.position(slot), state.velocity(slot))
         };
         let (start, _) = at(run.state());
         let steps = (seconds / scenario.clock.step_seconds()).round();
@@ -414,9 +411,8 @@ fn shown(
     };
     let state = run.state();
     let slot = state.slot(moves.agent.0 as usize, 0);
-    let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
-    let direction = Vec2::new(at(&state.driving.ex), at(&state.driving.ey));
-    (unit(direction), at(&state.driving.speed), seconds)
+    let direction = slot.vector(&state.driving.ex, &state.driving.ey);
+    (unit(direction), slot.of(&state.driving.speed), seconds)
 }
 
 /// Whether somebody moved as advised.

@@ -8,9 +8,10 @@ use super::path::PathCommand;
 use super::plot::PlotCommand;
 use super::replay::{EvaluateCommand, FitCommand, MonitorCommand};
 use super::simulate::choice::Keep;
-use super::simulate::format::parse_trace_format;
+use super::simulate::destination::left_out;
+use super::terminal::ColorChoice;
 use super::values::{
-    Model, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
+    Model, TextFormat, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
 };
 use super::walk::WalkCommand;
 use crate::data::table::{FORMATS, TraceFormat};
@@ -33,17 +34,6 @@ pub(super) struct Arguments {
     /// When to color the output.
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub(super) color: ColorChoice,
-}
-
-/// When to colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ColorChoice {
-    /// On a terminal.
-    Auto,
-    /// Always.
-    Always,
-    /// Never.
-    Never,
 }
 
 /// Verbs.
@@ -258,7 +248,10 @@ pub(super) struct Simulate {
 /// The names of the formats of traces, each with what it is.
 fn trace_formats() -> impl TypedValueParser<Value = &'static TraceFormat> {
     let names = FORMATS.iter().map(|format| PossibleValue::new(format.name).help(format.meaning));
-    PossibleValuesParser::new(names).try_map(|name| parse_trace_format(&name))
+    PossibleValuesParser::new(names).try_map(|name| {
+        let format = FORMATS.iter().find(|format| format.name == name).ok_or("unknown format")?;
+        if format.open.is_some() { Ok(format) } else { Err(left_out(format)) }
+    })
 }
 
 /// `smc compare-walks`
@@ -321,17 +314,8 @@ pub(super) struct Drift {
     #[arg(long)]
     pub(super) first: bool,
     /// Format on standard output; `json` writes one object per line, the summary last.
-    #[arg(long, value_enum, default_value_t = DriftFormat::Text)]
-    pub(super) format: DriftFormat,
-}
-
-/// Formats of `smc drift`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum DriftFormat {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
 }
 
 /// `smc show`

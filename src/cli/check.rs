@@ -8,14 +8,14 @@ use super::outputs::Outputs;
 use super::parts::PartsFolder;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
-use super::{complaint, inputs, output, page};
+use super::{complaint, inputs, output, page, values};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, Threads, forecast, run as run_study};
+use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, forecast, run as run_study};
 use crate::gait;
 use crate::library;
 use crate::model::Scenario;
@@ -94,9 +94,9 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     // Shards of this process are its threads.
     let fewest = shards.filter(|_| is_local).unwrap_or(most);
     let threads = arguments.threads.unwrap_or_else(cores).min(most).min(fewest);
-    let executor = match Threads::new(Some(threads)) {
+    let executor = match values::threads(Some(threads)) {
         Ok(executor) => executor,
-        Err(error) => return reporter.fault(&Fault::Threads(error.to_string())),
+        Err(error) => return reporter.refuse(error),
     };
     let place = |span: Span| locate(&inputs.sources, span);
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
@@ -154,7 +154,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
 fn folder(way: &Way<'_>) -> Result<PartsFolder, Vec<Diagnostic>> {
     let named = match way {
         Way::Merge(folder) if !folder.is_dir() => {
-            return Err(vec![complaint::input(format!("the folder `{}` does not exist", folder.display()))]);
+            return Err(complaint::input(format!("the folder `{}` does not exist", folder.display())).into());
         }
         Way::Merge(folder) => Some(folder.to_path_buf()),
         // What is printed for Kubernetes is run later.
@@ -166,7 +166,7 @@ fn folder(way: &Way<'_>) -> Result<PartsFolder, Vec<Diagnostic>> {
     let is_kept = named.is_some();
     // Other machines find it where they find the model.
     let path = named.unwrap_or_else(|| format!(".smc-parts-{}", std::process::id()).into());
-    PartsFolder::new(path, is_kept).map_err(|error| vec![error])
+    Ok(PartsFolder::new(path, is_kept)?)
 }
 
 fn cores() -> usize {
@@ -208,7 +208,7 @@ impl Reporter<'_> {
         };
         match print(&text) {
             Ok(()) => Exit::Success,
-            Err(reason) => self.refuse(complaint::output(reason)),
+            Err(error) => self.refuse(error),
         }
     }
 
@@ -254,19 +254,15 @@ impl Reporter<'_> {
     /// A report of a run that never began, in formats for machines; people have read it already.
     fn hand_out(mut self, reason: String) -> Exit {
         let run = CallResult {
-            scenario: self.arguments.model.scenario.clone(),
-            seed: self.arguments.seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
             inputs: std::mem::take(&mut self.prints),
             diagnostics: std::mem::take(&mut self.findings),
             failure: Some(Failure::Input(reason)),
-            replay: format!("{} --seed {}", line(self.arguments).check(), self.arguments.seed),
-            ..CallResult::default()
+            ..blank(self.arguments)
         };
         if self.outputs.screen.is_for_programs()
-            && let Err(reason) = print(&report::render(&run, self.outputs.screen, Palette::PLAIN))
+            && let Err(error) = print(&report::render(&run, self.outputs.screen, Palette::PLAIN))
         {
-            complaint::tell(&complaint::output(reason), &[], self.colors);
+            complaint::tell(&error, &[], self.colors);
         }
         self.write(run, Traces::default());
         Exit::Wrong
@@ -277,10 +273,8 @@ impl Reporter<'_> {
         let mut exit = Exit::Success;
         for (format, path) in &self.outputs.files {
             let text = report::render(&run, *format, Palette::PLAIN);
-            if let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) {
-                complaint::tell(&complaint::unwritten(path, &error), &[], self.colors);
-                exit = Exit::Wrong;
-            }
+            let saved = output::save(path, text.as_bytes());
+            exit = exit.worse(complaint::end(saved.map(|()| Exit::Success), &[], self.colors));
         }
         let Some(path) = &self.outputs.page else { return exit };
         let page = Page { run, sources: self.sources, traces, ..Page::default() };
@@ -299,10 +293,8 @@ impl Reporter<'_> {
         let run = CallResult { inputs, diagnostics, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
-        if let Err(reason) = print(&report::render(&run, self.outputs.screen, palette)) {
-            complaint::tell(&complaint::output(reason), &[], self.colors);
-            exit = exit.worse(Exit::Wrong);
-        }
+        let printed = print(&report::render(&run, self.outputs.screen, palette));
+        exit = exit.worse(complaint::end(printed.map(|()| Exit::Success), &[], self.colors));
         if let Some(error) = &broken {
             complaint::tell(error, self.sources, self.colors);
         }
@@ -312,13 +304,7 @@ impl Reporter<'_> {
 
 /// Reports that a call ended before its first trial, on standard error and in formats for machines.
 fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
-    let run = CallResult {
-        scenario: arguments.model.scenario.clone(),
-        seed: arguments.seed,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        replay: format!("{} --seed {}", line(arguments).check(), arguments.seed),
-        ..CallResult::default()
-    };
+    let run = blank(arguments);
     let chosen = screen(arguments);
     move |ended| {
         let mut run = run.clone();
@@ -345,21 +331,22 @@ fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clon
 pub(super) fn misused(chosen: Format, message: &str) {
     let error = Diagnostic::placeless(Code::E0705, message);
     let run = CallResult {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
         diagnostics: inputs::findings(&[error], &[]),
         failure: Some(Failure::Input(message.to_owned())),
-        ..CallResult::default()
+        ..CallResult::of("", 0)
     };
     for_machines(chosen, &run);
 }
 
 /// A report of a call that ended without results, in formats for machines.
 pub(super) fn without_results(chosen: Format, scenario: String, seed: u64, failure: Failure) {
-    let version = env!("CARGO_PKG_VERSION").to_owned();
-    for_machines(
-        chosen,
-        &CallResult { scenario, seed, version, failure: Some(failure), ..CallResult::default() },
-    );
+    for_machines(chosen, &CallResult { failure: Some(failure), ..CallResult::of(scenario, seed) });
+}
+
+/// What is known of a call before its first trial.
+fn blank(arguments: &Questions) -> CallResult {
+    let replay = format!("{} --seed {}", line(arguments).check(), arguments.seed);
+    CallResult { replay, ..CallResult::of(&arguments.model.scenario, arguments.seed) }
 }
 
 fn for_machines(chosen: Format, run: &CallResult) {
@@ -371,7 +358,7 @@ fn for_machines(chosen: Format, run: &CallResult) {
 /// The format that a call prints.
 pub(super) fn screen(arguments: &Questions) -> Format {
     let printed = arguments.format.iter().find(|destination| destination.file.is_none());
-    printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format.of())
+    printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format)
 }
 
 /// File and line of a place.
@@ -382,11 +369,6 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 
 /// The files and settings of the call.
 fn line(arguments: &Questions) -> CommandLine {
-    CommandLine {
-        scenario: arguments.model.scenario.clone(),
-        properties: arguments.properties.clone(),
-        settings: arguments.model.set.clone(),
-        data: arguments.model.data.iter().map(|data| data.display().to_string()).collect(),
-        velocity: arguments.velocity.map(|velocity| velocity.name().to_owned()),
-    }
+    let line = page::line(&arguments.model, arguments.velocity);
+    CommandLine { properties: arguments.properties.clone(), ..line }
 }

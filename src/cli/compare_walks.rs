@@ -4,7 +4,7 @@ use super::arguments::{CompareWalks, WalksFormat};
 use super::complaint;
 use super::inputs;
 use super::output;
-use super::terminal::{Colors, print};
+use super::terminal::Colors;
 use crate::base::visible::visible;
 use crate::data::tracks::LineError;
 use crate::data::walks::{Walk, read_walks};
@@ -15,7 +15,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::decode;
 use crate::syntax::source::{Source, SourceId, Span};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Errors of a file that are shown.
 pub(super) const SHOWN: usize = 5;
@@ -27,23 +27,18 @@ const HINT: &str = "write a table with the columns `walk,t,x,y`, perhaps `leg`: 
 /// Runs the command.
 pub(super) fn run(arguments: &CompareWalks, colors: Colors) -> Exit {
     let mut sources = Vec::new();
-    match answer(arguments, &mut sources) {
-        Ok(()) => Exit::Success,
-        Err(errors) => {
-            complaint::tell_all(&errors, &sources, colors);
-            Exit::Wrong
-        }
-    }
+    let done = answer(arguments, &mut sources);
+    complaint::end(done.map(|()| Exit::Success), &sources, colors)
 }
 
 fn answer(arguments: &CompareWalks, sources: &mut Vec<Source>) -> Result<(), Vec<Diagnostic>> {
     let files = [&arguments.first, &arguments.second];
     if files.iter().all(|file| *file == "-") {
-        return Err(vec![complaint::input("standard input can be read only once")]);
+        return Err(complaint::input("standard input can be read only once").into());
     }
     let paths = files.map(|file| PathBuf::from(if file == "-" { inputs::STDIN } else { file }));
     for written in [&arguments.output, &arguments.points] {
-        output::guard(written.as_deref(), &paths).map_err(|error| vec![error])?;
+        output::guard(written.as_deref(), &paths)?;
     }
     let first = read(&arguments.first, sources);
     let second = read(&arguments.second, sources);
@@ -58,45 +53,37 @@ fn answer(arguments: &CompareWalks, sources: &mut Vec<Source>) -> Result<(), Vec
         let without = usize::from(first[0].leg.is_some());
         let title = format!("`{}` has no column `leg`, but the other table has", sources[without].name);
         let hint = "add the column, or remove it from the other table";
-        return Err(vec![Diagnostic::error(Code::E0708, header(&sources[without]), title).hint(hint)]);
+        return Err(Diagnostic::error(Code::E0708, header(&sources[without]), title).hint(hint).into());
     }
     if arguments.paired && !has_pairs(&first, &second) {
         let hint = "give walks that belong together one name in both tables, or remove `--paired`";
-        return Err(vec![complaint::argument("`--paired` finds no walk with one name in both tables", hint)]);
+        let title = "`--paired` finds no walk with one name in both tables";
+        return Err(complaint::argument(title, hint).into());
     }
     let found = compare(&first, &second, arguments.paired, arguments.seed);
     let sets = [(&arguments.first, &first), (&arguments.second, &second)]
         .map(|(file, walks)| WalkSet { file: inputs::shown(file), walks });
     if let Some(path) = &arguments.points {
         output::write(path, |out| walks::write_points(out, &found.whole, sets))
-            .map_err(|error| unwritten(path, &error))?;
+            .map_err(|error| complaint::unwritten(path, &error))?;
     }
     let text = match arguments.format {
         WalksFormat::Text => visible(&walks::to_text(&found, sets)).into_owned(),
         WalksFormat::Json => walks::to_json(&found, sets, arguments.seed),
     };
-    match &arguments.output {
-        Some(path) => {
-            output::write(path, |out| out.write_all(text.as_bytes())).map_err(|error| unwritten(path, &error))
-        }
-        None => print(&text).map_err(|reason| vec![complaint::output(reason)]),
-    }
-}
-
-fn unwritten(path: &Path, error: &std::io::Error) -> Vec<Diagnostic> {
-    vec![complaint::output(format!("`{}` cannot be written: {error}", path.display()))]
+    Ok(output::put(arguments.output.as_deref(), &text)?)
 }
 
 /// The walks of a file. Its text is kept for the places of errors.
 fn read(file: &str, sources: &mut Vec<Source>) -> Result<Vec<Walk>, Vec<Diagnostic>> {
     let id = SourceId(sources.len() as u16);
     let name = inputs::shown(file);
-    let bytes = inputs::read(file).map_err(|reason| vec![complaint::input(reason)])?;
+    let bytes = inputs::read(file).map_err(complaint::input)?;
     let source = match decode(id, name, &bytes) {
         Ok(source) => source,
         Err(error) => {
             sources.push(Source::new(id, name, String::from_utf8_lossy(&bytes)));
-            return Err(vec![error]);
+            return Err(error.into());
         }
     };
     let walks = read_walks(&source.text).map_err(|errors| {

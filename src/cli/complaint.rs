@@ -1,7 +1,9 @@
 //! What is reported of a call that is wrong in a way that no file shows: each with a code and with what to do.
 
 use super::terminal::{Colors, say};
+use crate::compile::nearest::nearest;
 use crate::library::Inputs;
+use crate::report::ExitCode as Exit;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
@@ -56,6 +58,24 @@ pub(super) fn tell(error: &Diagnostic, sources: &[Source], colors: Colors) {
 /// Writes them to standard error.
 pub(super) fn tell_all(errors: &[Diagnostic], sources: &[Source], colors: Colors) {
     say(&render(errors, sources, colors.err));
+}
+
+/// How a call ends: what stops it is written to standard error.
+pub(super) fn end(
+    done: Result<Exit, impl Into<Vec<Diagnostic>>>,
+    sources: &[Source],
+    colors: Colors,
+) -> Exit {
+    done.unwrap_or_else(|errors| {
+        tell_all(&errors.into(), sources, colors);
+        Exit::Wrong
+    })
+}
+
+/// A hint at a name: the nearest one that is known, or all, after what they are.
+pub(super) fn meant(name: &str, known: &[&str], all: &str) -> String {
+    nearest(name, known.iter().copied())
+        .map_or_else(|| format!("{all} {}", known.join(", ")), |near| format!("did you mean `{near}`?"))
 }
 
 /// Writes errors and warnings about the inputs to standard error.

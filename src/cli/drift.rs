@@ -1,8 +1,9 @@
 //! `smc drift`: has a probability changed? A cumulative sum over recorded or streamed outcomes (Page 1954).
 
-use super::arguments::{Drift, DriftFormat};
+use super::arguments::Drift;
 use super::complaint;
 use super::terminal::{Colors, print, print_to_reader};
+use super::values::TextFormat;
 use crate::base::math;
 use crate::data::outcomes::{Column, Outcomes};
 use crate::report::ExitCode as Exit;
@@ -18,21 +19,15 @@ const QUIET: f64 = 1000.0;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Drift, colors: Colors) -> Exit {
-    match watch(arguments) {
-        Ok(true) => Exit::Violated,
-        Ok(false) => Exit::Success,
-        Err(error) => {
-            complaint::tell(&error, &[], colors);
-            if arguments.format == DriftFormat::Json {
-                let _ = print_error(&error.title);
-            }
-            Exit::Wrong
-        }
+    let done = watch(arguments);
+    if let (Err(error), TextFormat::Json) = (&done, arguments.format) {
+        let _ = print_error(&error.title);
     }
+    complaint::end(done.map(|found| if found { Exit::Violated } else { Exit::Success }), &[], colors)
 }
 
 /// Writes an error as an object.
-pub(super) fn print_error(message: &str) -> Result<(), String> {
+pub(super) fn print_error(message: &str) -> Result<(), Diagnostic> {
     let error = json!({ "schema": 1, "error": { "bug": false, "message": message } });
     print(&format!("{error}\n"))
 }
@@ -77,14 +72,13 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
             alarms.push(cusum.read());
             // At once: whoever listens may want to act. Where nobody does, nothing more is read.
             let heard = print_to_reader(&match arguments.format {
-                DriftFormat::Text => {
+                TextFormat::Text => {
                     format!("alarm after outcome {} (line {})\n", cusum.read(), outcomes.lines())
                 }
-                DriftFormat::Json => {
+                TextFormat::Json => {
                     format!("{}\n", json!({ "alarm": cusum.read(), "line": outcomes.lines() }))
                 }
-            })
-            .map_err(complaint::output)?;
+            })?;
             if arguments.first || !heard {
                 break;
             }
@@ -93,7 +87,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
     if cusum.read() == 0 {
         return Err(table(format!("{name} contains no outcome")));
     }
-    print(&summary(arguments, &cusum, successes, &alarms)).map_err(complaint::output)?;
+    print(&summary(arguments, &cusum, successes, &alarms))?;
     Ok(!alarms.is_empty())
 }
 
@@ -138,7 +132,7 @@ fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> 
     let certifies =
         format!("while P is {before}, at least {quiet:.0} outcomes pass on average before a false alarm");
     match arguments.format {
-        DriftFormat::Json => {
+        TextFormat::Json => {
             let object = json!({
                 "schema": 1,
                 "method": { "name": "cusum", "before": before, "after": after, "threshold": cusum.threshold() },
@@ -153,7 +147,7 @@ fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> 
             });
             format!("{object}\n")
         }
-        DriftFormat::Text => {
+        TextFormat::Text => {
             let read = cusum.read();
             let share = 100.0 * successes as f64 / read as f64;
             let said = match alarms {

@@ -2,31 +2,31 @@
 
 use super::arguments::Explain;
 use super::complaint;
-use super::terminal::{Colors, print};
+use super::terminal::print;
 use crate::compile::nearest::nearest;
 use crate::model::BuiltIn;
-use crate::report::ExitCode as Exit;
 use crate::stats::PROCEDURES;
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
 
 /// The manual of the language.
 const MANUAL: &str = include_str!("../../docs/language.md");
 
 /// Runs the command.
-pub(super) fn run(arguments: &Explain, colors: Colors) -> Exit {
+pub(super) fn run(arguments: &Explain) -> Result<(), Diagnostic> {
     let Some(wanted) = &arguments.name else {
         let codes = Code::ALL.iter().map(|code| format!("{code}  {}\n", code.title()));
         let procedures = PROCEDURES.iter().map(|one| format!("{} by {}\n", one.serves, one.signature()));
         let functions = BuiltIn::names().map(|name| format!("{name}(…)\n"));
-        return finish(&codes.chain(procedures).chain(functions).collect::<String>(), colors);
+        return print(&codes.chain(procedures).chain(functions).collect::<String>());
     };
     if let Ok(code) = wanted.parse::<Code>() {
-        return finish(code.page().trim_start_matches("# "), colors);
+        return print(code.page().trim_start_matches("# "));
     }
     let procedures = PROCEDURES.iter().filter(|one| one.name == wanted.trim()).map(|one| one.page());
     let pages: Vec<String> = procedures.chain(BuiltIn::find(wanted.trim()).and_then(function)).collect();
     if !pages.is_empty() {
-        return finish(&pages.join("\n"), colors);
+        return print(&pages.join("\n"));
     }
     let hint = nearest(&wanted.trim().to_ascii_uppercase(), Code::ALL.iter().map(|code| code.name()))
         .or_else(|| nearest(wanted.trim(), PROCEDURES.iter().map(|one| one.name).chain(BuiltIn::names())));
@@ -35,8 +35,7 @@ pub(super) fn run(arguments: &Explain, colors: Colors) -> Exit {
         |near| format!("did you mean {near}? `smc explain` lists all names"),
     );
     let said = format!("unknown code, procedure or function `{wanted}`");
-    complaint::tell(&complaint::argument(said, hint), &[], colors);
-    Exit::Wrong
+    Err(complaint::argument(said, hint))
 }
 
 /// What the manual says of a function: its row in the table of functions, or the paragraph in which it stands.
@@ -64,14 +63,4 @@ fn function(built_in: &BuiltIn) -> Option<String> {
         Some(format!("{}\n\n{found}\n", built_in.name))
     };
     row(true).or_else(|| row(false)).or_else(paragraph)
-}
-
-fn finish(text: &str, colors: Colors) -> Exit {
-    match print(text) {
-        Ok(()) => Exit::Success,
-        Err(reason) => {
-            complaint::tell(&complaint::output(reason), &[], colors);
-            Exit::Wrong
-        }
-    }
 }

@@ -76,14 +76,14 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
                 exit = exit.worse(Exit::Violated);
             }
         } else if name == "-" {
-            if let Err(reason) = print(&text) {
-                complaint::tell(&complaint::output(reason), &[], colors);
+            if let Err(error) = print(&text) {
+                complaint::tell(&error, &[], colors);
                 return Exit::Wrong;
             }
         } else if text != source.text
-            && let Err(error) = output::write(Path::new(name), |out| out.write_all(text.as_bytes()))
+            && let Err(error) = output::save(Path::new(name), text.as_bytes())
         {
-            complaint::tell(&complaint::output(format!("`{name}` cannot be written: {error}")), &[], colors);
+            complaint::tell(&error, &[], colors);
             exit = Exit::Wrong;
         }
     }

@@ -1,6 +1,9 @@
 //! Files of a call: where they are looked for, and their bytes.
 
+use super::complaint;
+use super::terminal::Colors;
 use super::values::Model;
+use crate::compile::Study;
 use crate::engine::outcome::{Finding, Spot};
 use crate::library::{Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
 use crate::syntax::codes::Code;
@@ -157,6 +160,18 @@ pub(super) fn parse(model: &Model, properties: &[String]) -> (Parsed, Vec<PathBu
     (read_all(names(model, properties), &mut disk), disk.paths)
 }
 
+/// The same, and says what is wrong; none with errors.
+pub(super) fn parse_or_tell(
+    model: &Model,
+    properties: &[String],
+    colors: Colors,
+) -> Option<(Parsed, Vec<PathBuf>)> {
+    let (parsed, paths) = parse(model, properties);
+    complaint::diagnose(&parsed.inputs, colors);
+    let is_wrong = parsed.inputs.diagnostics.iter().any(|one| one.severity == Severity::Error);
+    (!is_wrong).then_some((parsed, paths))
+}
+
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
     let mut disk = Disk { model, paths: Vec::new() };
@@ -177,4 +192,11 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
         inputs.diagnostics.extend(errors);
     }
     Loaded { inputs, paths: disk.paths }
+}
+
+/// The same, and says what is wrong; none where nothing can be run.
+pub(super) fn load_or_tell(model: &Model, properties: &[String], colors: Colors) -> Option<(Study, Loaded)> {
+    let mut loaded = load(model, properties);
+    complaint::diagnose(&loaded.inputs, colors);
+    Some((loaded.inputs.study.take()?, loaded))
 }

@@ -47,8 +47,7 @@ impl Launcher<'_> {
              {} {call} --round {plan} --index \"$index\" -o {parts} || exit 1\n",
             path(program)
         );
-        output::write(&file, |out| out.write_all(script.as_bytes()))
-            .map_err(|error| complaint::unwritten(&file, &error))?;
+        output::save(&file, script.as_bytes())?;
         Ok(file)
     }
 

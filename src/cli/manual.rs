@@ -2,34 +2,23 @@
 
 use super::arguments::Arguments;
 use super::complaint;
-use super::terminal::{Colors, print};
-use crate::report::ExitCode as Exit;
+use super::terminal::print;
+use crate::syntax::diagnostic::Diagnostic;
 use clap::CommandFactory;
 use std::path::Path;
 
 /// Completions of a shell, to standard output.
-pub(super) fn completions(shell: clap_complete::Shell, colors: Colors) -> Exit {
+pub(super) fn completions(shell: clap_complete::Shell) -> Result<(), Diagnostic> {
     let mut bytes = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "smc", &mut bytes);
-    match print(&String::from_utf8_lossy(&bytes)) {
-        Ok(()) => Exit::Success,
-        Err(reason) => {
-            complaint::tell(&complaint::output(reason), &[], colors);
-            Exit::Wrong
-        }
-    }
+    print(&String::from_utf8_lossy(&bytes))
 }
 
 /// Man pages, into a directory.
-pub(super) fn pages(directory: &Path, colors: Colors) -> Exit {
+pub(super) fn pages(directory: &Path) -> Result<(), Diagnostic> {
     let written = std::fs::create_dir_all(directory)
         .and_then(|()| clap_mangen::generate_to(Arguments::command(), directory));
-    match written {
-        Ok(()) => Exit::Success,
-        Err(error) => {
-            let error = format!("man pages cannot be written to `{}`: {error}", directory.display());
-            complaint::tell(&complaint::output(error), &[], colors);
-            Exit::Wrong
-        }
-    }
+    written.map_err(|error| {
+        complaint::output(format!("man pages cannot be written to `{}`: {error}", directory.display()))
+    })
 }

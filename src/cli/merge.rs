@@ -38,13 +38,12 @@ impl Rounds<'_> {
         folder: &mut PartsFolder,
         launcher: Option<&Launcher<'_>>,
     ) -> Result<Option<CallResult>, Vec<Diagnostic>> {
-        let one = |error| vec![error];
         let mut attempts = Attempts::default();
         // Witnesses of many results are looked for once.
         self.call.explains = launcher.is_none() || self.study.queries.len() <= 64;
         loop {
-            let before = folder.plan(&self.origin).map_err(one)?;
-            (self.warn)(&folder.scan(&self.origin, before.as_ref()).map_err(one)?);
+            let before = folder.plan(&self.origin)?;
+            (self.warn)(&folder.scan(&self.origin, before.as_ref())?);
             let (run, wanted) = self.read(folder)?;
             let shards = Plan::deal(&wanted, &attempts, self.shards, folder.pace());
             if launcher.is_some() && (shards.is_empty() || self.budget.must_stop()) {
@@ -60,12 +59,12 @@ impl Rounds<'_> {
             let lacking = before.as_ref().map_or_else(Vec::new, |plan| folder.missing(plan));
             let (round, max_trials) = (folder.next_round(before.as_ref()), self.budget.max_trials);
             let plan = Plan { origin: self.origin.clone(), round, max_trials, shards };
-            folder.write_plan(&plan).map_err(one)?;
+            folder.write_plan(&plan)?;
             let Some(launcher) = launcher else {
                 (self.warn)(&parts::lost(&lacking));
                 return Ok(Some(run));
             };
-            if let Some(manifest) = launcher.manifest(folder, &plan).map_err(one)? {
+            if let Some(manifest) = launcher.manifest(folder, &plan)? {
                 let _ = print(&manifest);
                 return Ok(None);
             }
@@ -78,7 +77,7 @@ impl Rounds<'_> {
                 let counts = format!("{done} of {count} shards done, {} running or waiting", count - done);
                 self.progress.shards(&format!("round {round}: {counts}, {failed} failed{known}"));
             };
-            launcher.launch(folder, &plan, self.budget, &told).map_err(one)?;
+            launcher.launch(folder, &plan, self.budget, &told)?;
             if !self.budget.must_stop() {
                 let missing = folder.missing(&plan);
                 (self.warn)(&parts::lost(&missing));
@@ -89,9 +88,8 @@ impl Rounds<'_> {
 
     /// Runs what is not there on the threads of this process, and writes parts of it.
     pub(super) fn record(&mut self, folder: &mut PartsFolder) -> Result<CallResult, Vec<Diagnostic>> {
-        let one = |error| vec![error];
-        let before = folder.plan(&self.origin).map_err(one)?;
-        (self.warn)(&folder.scan(&self.origin, before.as_ref()).map_err(one)?);
+        let before = folder.plan(&self.origin)?;
+        (self.warn)(&folder.scan(&self.origin, before.as_ref())?);
         let (round, made) = (folder.next_round(before.as_ref()), AtomicUsize::new(0));
         let unwritten = Mutex::new(None);
         let keep = |part: &Part| {
@@ -109,7 +107,7 @@ impl Rounds<'_> {
         let run = run_study(self.study, &self.call, &recorder, self.budget, self.progress);
         recorder.flush(self.budget.elapsed());
         if let Ok(Some(error)) = unwritten.into_inner() {
-            return Err(one(error));
+            return Err(error.into());
         }
         run.map_err(|fault| library::refusals(&fault))
     }

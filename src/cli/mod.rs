@@ -35,6 +35,7 @@ mod walk;
 use crate::base::visible::visible;
 use crate::engine::outcome::Failure;
 use crate::report::ExitCode as Exit;
+use crate::syntax::diagnostic::Diagnostic;
 use arguments::{Arguments, Command};
 use check::Way;
 use clap::Parser;
@@ -117,7 +118,7 @@ fn misused(error: &clap::Error) {
     if words.iter().any(|word| word == "check" || word == "merge")
         && let Some(destination) = format.and_then(|text| text.parse::<Destination>().ok())
     {
-        check::misused(destination.format.of(), message);
+        check::misused(destination.format, message);
     } else if words.iter().any(|word| word == "drift") && format == Some("json") {
         let _ = drift::print_error(message);
     }
@@ -132,6 +133,7 @@ fn format_of(words: &[String]) -> Option<&str> {
 
 fn dispatch(arguments: &Arguments) -> Exit {
     let colors = Colors::chosen(arguments.color);
+    let ended = |done: Result<(), Diagnostic>| complaint::end(done.map(|()| Exit::Success), &[], colors);
     match &arguments.command {
         Command::Check(command) => check::run(&command.questions, &Way::Check(command), colors),
         Command::Merge(command) => check::run(&command.questions, &Way::Merge(&command.folder), colors),
@@ -145,13 +147,13 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Infer(command) => infer::run(command, colors),
         Command::Gait(command) => gait::run(command, colors),
         Command::Walk(command) => walk::run(command, colors),
-        Command::Plot(command) => plot::run(command, colors),
+        Command::Plot(command) => ended(plot::run(command)),
         Command::CompareWalks(command) => compare_walks::run(command, colors),
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),
         Command::Fmt(command) => format::run(command, colors),
-        Command::Explain(command) => explain::run(command, colors),
-        Command::Completions { shell } => manual::completions(*shell, colors),
-        Command::Man { directory } => manual::pages(directory, colors),
+        Command::Explain(command) => ended(explain::run(command)),
+        Command::Completions { shell } => ended(manual::completions(*shell)),
+        Command::Man { directory } => ended(manual::pages(directory)),
     }
 }

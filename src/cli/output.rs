@@ -2,6 +2,7 @@
 
 use super::complaint;
 use super::inputs::STDIN;
+use super::terminal::print;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::fs::{File, Metadata, OpenOptions};
@@ -12,6 +13,24 @@ use std::path::{Path, PathBuf};
 const MOST_LINKS: usize = 40;
 /// Most names that are tried for the file beside: those of calls that were killed may be left.
 const MOST_NAMES: usize = 1000;
+
+/// Writes a text to a file, or to standard output.
+pub(super) fn put(file: Option<&Path>, text: &str) -> Result<(), Diagnostic> {
+    let Some(path) = file else { return print(text) };
+    save(path, text.as_bytes())
+}
+
+/// A table as a text.
+pub(super) fn table(fill: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> Result<String, Diagnostic> {
+    let mut bytes = Vec::new();
+    fill(&mut bytes).map_err(|error| complaint::output(error.to_string()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Writes a file of these bytes.
+pub(super) fn save(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
+    write(path, |out| out.write_all(bytes)).map_err(|error| complaint::unwritten(path, &error))
+}
 
 /// Writes a file. A regular file is written beside its place, with the permissions of the file that it replaces, and
 /// then renamed: a write that fails leaves what was there. Devices and pipes are written as they are.
@@ -107,7 +126,7 @@ pub(super) fn guard_all(outputs: &[Option<&Path>], inputs: &[PathBuf]) -> Result
 }
 
 /// Whether two names stand for one file.
-pub(super) fn is_same(one: &Path, other: &Path) -> bool {
+fn is_same(one: &Path, other: &Path) -> bool {
     let (Ok(of_one), Ok(of_other)) = (std::fs::metadata(one), std::fs::metadata(other)) else { return false };
     of_one.is_file() && of_other.is_file() && is_same_file((one, &of_one), (other, &of_other))
 }

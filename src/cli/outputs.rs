@@ -26,8 +26,7 @@ impl Outputs {
         page: Option<&Path>,
         inputs: &[PathBuf],
     ) -> Result<Self, Diagnostic> {
-        let printed =
-            chosen.iter().filter(|destination| destination.file.is_none()).map(|one| one.format.of());
+        let printed = chosen.iter().filter(|destination| destination.file.is_none()).map(|one| one.format);
         let mut printed = printed.chain(is_brief.then_some(Format::Brief));
         let screen = printed.next().unwrap_or(Format::Text);
         if printed.next().is_some() {
@@ -36,7 +35,7 @@ impl Outputs {
                 "write one of them into a file: `--format json=results.json`",
             ));
         }
-        let files = chosen.iter().filter_map(|one| Some((one.format.of(), one.file.clone()?)));
+        let files = chosen.iter().filter_map(|one| Some((one.format, one.file.clone()?)));
         let files: Vec<_> = files.collect();
         let names: Vec<Option<&Path>> =
             files.iter().map(|(_, file)| Some(file.as_path())).chain([page]).collect();

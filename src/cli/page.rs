@@ -18,10 +18,8 @@ use std::path::Path;
 
 /// Writes a page.
 pub(super) fn write(path: &Path, page: Page<'_>, colors: Colors) -> Exit {
-    let text = html::page(page);
-    let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) else { return Exit::Success };
-    complaint::tell(&complaint::unwritten(path, &error), &[], colors);
-    Exit::Wrong
+    let saved = output::save(path, html::page(page).as_bytes());
+    complaint::end(saved.map(|()| Exit::Success), &[], colors)
 }
 
 /// The files and settings of a call without properties.
@@ -80,13 +78,8 @@ impl Trials<'_> {
             }
         }
         let title = &program.scenario.title;
-        let run = CallResult {
-            scenario: if title.is_empty() { scenario.to_owned() } else { title.clone() },
-            seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            replay,
-            ..CallResult::default()
-        };
+        let title = if title.is_empty() { scenario } else { title };
+        let run = CallResult { replay, ..CallResult::of(title, seed) };
         exit.worse(write(path, Page { run, sources, traces, ..Page::default() }, colors))
     }
 }

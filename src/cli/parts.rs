@@ -91,8 +91,7 @@ impl PartsFolder {
     pub(super) fn write_plan(&self, plan: &Plan) -> Result<(), Diagnostic> {
         let file = self.plan_file();
         let json = serde_json::to_vec(plan).map_err(|error| super::complaint::output(error.to_string()))?;
-        output::write(&file, |out| out.write_all(&json))
-            .map_err(|error| super::complaint::unwritten(&file, &error))
+        output::save(&file, &json)
     }
 
     /// The files of parts.
@@ -176,9 +175,7 @@ impl PartsFolder {
 /// Writes a part into a folder.
 pub(super) fn write(folder: &Path, (round, index): (u64, usize), part: &Part) -> Result<(), Diagnostic> {
     let bytes = part.bytes().map_err(|error| super::complaint::output(error.to_string()))?;
-    let file = folder.join(name(round, index));
-    output::write(&file, |out| out.write_all(&bytes))
-        .map_err(|error| super::complaint::unwritten(&file, &error))
+    output::save(&folder.join(name(round, index)), &bytes)
 }
 
 /// A warning about shards that brought nothing back, if any.

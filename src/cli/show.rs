@@ -4,7 +4,7 @@ use super::arguments::{Show, ShowFormat};
 use super::complaint;
 use super::inputs;
 use super::output;
-use super::terminal::{Colors, print};
+use super::terminal::Colors;
 use crate::base::visible::visible;
 use crate::report::ExitCode as Exit;
 use crate::report::model;
@@ -19,16 +19,6 @@ pub(super) fn run(arguments: &Show, colors: Colors) -> Exit {
         (ShowFormat::Svg, Some(world)) => plan::draw(&world.scenario),
         _ => visible(&model::describe(study)).into_owned(),
     };
-    let written = match &arguments.output {
-        Some(path) => output::write(path, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| format!("`{}` cannot be written: {error}", path.display())),
-        None => print(&text),
-    };
-    match written {
-        Ok(()) => Exit::Success,
-        Err(reason) => {
-            complaint::tell(&complaint::output(reason), &[], colors);
-            Exit::Wrong
-        }
-    }
+    let written = output::put(arguments.output.as_deref(), &text);
+    complaint::end(written.map(|()| Exit::Success), &[], colors)
 }

@@ -1,8 +1,21 @@
 //! Standard output and standard error: colours, broken pipes.
 
-use super::arguments::ColorChoice;
+use super::complaint;
 use crate::base::visible::visible;
+use crate::syntax::diagnostic::Diagnostic;
+use clap::ValueEnum;
 use std::io::{IsTerminal, Write};
+
+/// When to colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ColorChoice {
+    /// On a terminal.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
 
 /// Whether output is colored.
 #[derive(Clone, Copy, Debug)]
@@ -31,17 +44,17 @@ impl Colors {
 }
 
 /// Writes to standard output. A reader that went away is no error.
-pub(super) fn print(text: &str) -> Result<(), String> {
+pub(super) fn print(text: &str) -> Result<(), Diagnostic> {
     print_to_reader(text).map(|_| ())
 }
 
 /// Writes to standard output; false where its reader went away.
-pub(super) fn print_to_reader(text: &str) -> Result<bool, String> {
+pub(super) fn print_to_reader(text: &str) -> Result<bool, Diagnostic> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
-        Err(error) => Err(format!("standard output: {error}")),
+        Err(error) => Err(complaint::output(format!("standard output: {error}"))),
     }
 }
 

@@ -1,8 +1,20 @@
 //! What options of several commands have in common: the model, times, counts and shares.
 
 use crate::data::tracks::Velocity;
-use clap::Args;
+use crate::engine::{Fault, Threads};
+use crate::library;
+use crate::syntax::diagnostic::Diagnostic;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+
+/// A text or JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum TextFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
 
 /// The model, and the values set in it.
 #[derive(Args, Clone, Debug)]
@@ -19,6 +31,11 @@ pub(super) struct Model {
     /// Which velocities recordings have, where the call says so.
     #[arg(skip)]
     pub(super) velocity: Option<Velocity>,
+}
+
+/// Threads, so many or one for each core.
+pub(super) fn threads(number: Option<usize>) -> Result<Threads, Diagnostic> {
+    Threads::new(number).map_err(|error| library::refusal(&Fault::Threads(error.to_string())))
 }
 
 /// A probability, perhaps as a percentage.

@@ -43,14 +43,7 @@ pub(super) type Solid<'b> = (&'b Barrier, Bounds);
 
 /// The barriers of a scene with their rectangles.
 pub(super) fn solids(barriers: &[Barrier]) -> Vec<Solid<'_>> {
-    barriers.iter().filter_map(|barrier| Some((barrier, around(barrier)?))).collect()
-}
-
-fn around(barrier: &Barrier) -> Option<Bounds> {
-    match &barrier.obstacle {
-        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
-        Obstacle::Solid(shape) => Some(shape.bounds()),
-    }
+    barriers.iter().filter_map(|barrier| Some((barrier, barrier.obstacle.bounds()?))).collect()
 }
 
 /// The barrier nearest to a point among those that may be nearer than `reach`, and its distance.

@@ -352,3 +352,13 @@ pub enum MeasureKind {
         dimension: Dimension,
     },
 }
+
+impl MeasureKind {
+    /// The range of an expectation.
+    pub const fn range(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Expectation { range, .. } => Some(*range),
+            Self::Probability | Self::Quantile { .. } => None,
+        }
+    }
+}

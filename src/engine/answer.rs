@@ -205,21 +205,23 @@ impl Answers<'_> {
             _ if cut => Vec::new(),
             _ => witness::extremes(&entry.tally),
         };
-        result.witnesses = self.witnesses(&result, prepared, measure.target.column, &picks);
+        let settings = &result.asked.settings;
+        result.witnesses = self.witnesses(&result, prepared, (measure.target.column, None), &picks, settings);
         Ok(result)
     }
 
-    /// The witnesses of a result in whose world nobody was advised.
+    /// The witnesses of a column of a world, in which perhaps somebody was advised.
     pub(super) fn witnesses(
         &self,
         result: &QueryResult,
         prepared: &PreparedWorld,
-        column: usize,
+        (column, advice): (usize, Option<(usize, usize)>),
         picks: &[(Shows, u64)],
+        settings: &[(String, String)],
     ) -> Vec<Witness> {
         let calls = (self.call, self.budget);
         let picks = if self.call.explains { picks } else { &[] };
-        witness::find(prepared, column, None, picks, calls, &result.asked.settings, &result.unit)
+        witness::find(prepared, column, advice, picks, calls, settings, &result.unit)
     }
 
     /// Counts, and what they warn of.
@@ -433,10 +435,8 @@ impl Answers<'_> {
                 _ if was_cut(prepared, column, tally) => Vec::new(),
                 _ => witness::extremes(tally),
             };
-            let calls = (self.call, self.budget);
-            let picks = if self.call.explains { picks } else { Vec::new() };
-            result.witnesses =
-                witness::find(prepared, column, options[arm].advice, &picks, calls, &own, &result.unit);
+            let of = (column, options[arm].advice);
+            result.witnesses = self.witnesses(&result, prepared, of, &picks, &own);
         }
         result.rank = Some(listed);
         result.evidence = ranked.evidence.map(|snapshots| {

@@ -28,8 +28,8 @@ pub(super) trait Monitors {
     /// The trial of a lane is over; `place` is its place in the request.
     fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>);
 
-    /// The trial of a lane is cut by the budget.
-    fn cut(&mut self, place: usize, lane: usize);
+    /// The trial of a lane is cut by the budget: what it had is lost, unless it is kept here.
+    fn cut(&mut self, _place: usize, _lane: usize) {}
 
     /// The trial at a place cannot start.
     fn refuse(&mut self, place: usize);

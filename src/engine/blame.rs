@@ -13,7 +13,7 @@ use crate::logic::{
     AtomId, Node, NodeId, Part, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, leaves,
     sides, sources,
 };
-use crate::model::{AgentId, Bool, Scenario, Who};
+use crate::model::{AgentId, Bool, Who};
 
 /// Most truth values and numbers that are kept of a trial.
 const MOST_KEPT: usize = 1 << 27;
@@ -312,10 +312,9 @@ fn names(prepared: &PreparedWorld, who: &[AgentId], state: &State) -> Said {
 }
 
 fn name_of(prepared: &PreparedWorld, id: AgentId, state: &State) -> Option<String> {
-    let scenario: &Scenario = &prepared.program.scenario;
-    let agent = scenario.agents.get(id.0 as usize)?;
-    let arrival = state.queues.arrival(&scenario.sources, id, 0);
-    Some(arrival.unwrap_or_else(|| agent.name.clone()))
+    let scenario = &prepared.program.scenario;
+    scenario.agents.get(id.0 as usize)?;
+    Some(state.name_of(scenario, id, 0))
 }
 
 /// A reason in words.

@@ -79,15 +79,9 @@ impl Budget {
     }
 
     fn until(&self, deadline: Option<Instant>) -> Self {
-        Self {
-            max_trials: self.max_trials,
-            max_total: self.max_total,
-            lacks: AtomicBool::new(false),
-            deadline,
-            started: self.started,
-            interrupted: self.interrupted.clone(),
-            stopped: OnceLock::new(),
-        }
+        let (started, interrupted) = (self.started, self.interrupted.clone());
+        let own = Self::new(self.max_trials, None);
+        Self { max_total: self.max_total, deadline, started, interrupted, ..own }
     }
 
     /// Seconds since the call began.

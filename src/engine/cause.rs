@@ -5,7 +5,7 @@ use super::cell::{Item, Reading};
 use super::observer::SignalObserver;
 use super::prepared::PreparedWorld;
 use super::words;
-use crate::base::lanes::{Lanes, Mask};
+use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::{self, ViewReadings};
@@ -91,15 +91,13 @@ pub fn divergence(program: &Program, state: &State) -> String {
 fn runaway(scenario: &Scenario, state: &State) -> String {
     let speed = |agent: usize| {
         let slot = state.slot(agent, 0);
-        let (vx, vy) = (state.motion.vx[slot.block].0[slot.lane], state.motion.vy[slot.block].0[slot.lane]);
-        state.present[slot.block].has(slot.lane).then(|| (vx * vx + vy * vy).sqrt())
+        let v = state.velocity(slot);
+        state.is_present(slot).then(|| (v.x * v.x + v.y * v.y).sqrt())
     };
     let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;
-    let found = scenario.agents.iter().enumerate().find_map(|(agent, declared)| {
+    let found = (0..scenario.agents.len()).find_map(|agent| {
         let speed = speed(agent).filter(|speed| beyond(*speed))?;
-        let id = AgentId(agent as u32);
-        let arrival = state.queues.arrival(&scenario.sources, id, 0);
-        Some((arrival.unwrap_or_else(|| declared.name.clone()), speed))
+        Some((state.name_of(scenario, AgentId(agent as u32), 0), speed))
     });
     let most = words::quantity(TOP_SPEED, "m/s");
     match found {
@@ -160,14 +158,13 @@ pub(super) fn stranded(program: &Program, key: TrialKey, trials: u64) -> String 
     let scenario = &program.scenario;
     let who = (0..scenario.agents.len()).find(|&agent| state.plans.is_stranded(state.slot(agent, 0)));
     let Some(agent) = who else { return in_trials };
-    let slot = state.slot(agent, 0);
-    let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
+    let at = state.position(state.slot(agent, 0));
     format!(
         "{in_trials}; in trial {}, `{}` at ({}, {}) m at {}",
         key.index,
         scenario.agents[agent].name,
-        words::number((at(&state.motion.x) * 100.0).round() / 100.0),
-        words::number((at(&state.motion.y) * 100.0).round() / 100.0),
+        words::number((at.x * 100.0).round() / 100.0),
+        words::number((at.y * 100.0).round() / 100.0),
         moment(scenario, state.ticks[0]),
     )
 }

@@ -99,10 +99,7 @@ impl<'s> CompareSampling<'s> {
         (within, delta): (Option<f64>, f64),
         (seed, shows_evidence): (u64, bool),
     ) -> Result<Self, Fault> {
-        let range = match kind {
-            MeasureKind::Expectation { range, .. } => Some(*range),
-            _ => None,
-        };
+        let range = kind.range();
         let means = match range {
             Some((low, high)) => [(); 2]
                 .map(|()| match within {
@@ -179,12 +176,8 @@ impl<'s> CompareSampling<'s> {
         let pairs = self.likely(&statistics).map(|n| n.min(budget.max_trials));
         self.ahead = sides.iter().all(Pilot::is_complete).then_some(sides);
         self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
-        Ok(Forecast {
-            query: self.query.text.clone(),
-            settings: self.query.settings.clone(),
-            trials: pairs.map(|n| 2 * n),
-            seconds: pairs.likely as f64 * seconds,
-        })
+        let trials = pairs.map(|n| 2 * n);
+        Ok(Forecast { seconds: pairs.likely as f64 * seconds, ..Forecast::of(self.query, trials, 0.0) })
     }
 
     /// Pairs that it is likely to take; `statistics` is that of their differences.

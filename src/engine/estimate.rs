@@ -108,12 +108,7 @@ impl<'q> EstimateSampling<'q> {
             }
             let expected = forecast::entry(&entry.query.ask, &entry.procedure, &statistics);
             let trials = expected.unwrap_or(Likely::exactly(u64::MAX)).map(|n| n.min(budget.max_trials));
-            Forecast {
-                query: entry.query.text.clone(),
-                settings: entry.query.settings.clone(),
-                trials,
-                seconds: 0.0,
-            }
+            Forecast::of(entry.query, trials, 0.0)
         };
         let mut forecasts: Vec<Forecast> = self.entries.iter().map(forecast).collect();
         let most = forecasts.iter().map(|forecast| forecast.trials.most).max().unwrap_or(0);

@@ -59,6 +59,14 @@ pub struct CallResult {
     pub elapsed_s: f64,
 }
 
+impl CallResult {
+    /// Nothing yet, of this version of the program.
+    pub fn of(scenario: impl Into<String>, seed: u64) -> Self {
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Self { scenario: scenario.into(), seed, version, ..Self::default() }
+    }
+}
+
 /// Why a run ended before its queries.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
@@ -88,7 +96,7 @@ impl Failure {
 }
 
 /// The result of one query under one setting.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct QueryResult {
     /// What was asked.
     pub asked: AskedQuery,
@@ -143,34 +151,14 @@ pub struct QueryResult {
 }
 
 impl QueryResult {
+    /// The estimate with its interval, if there is one.
+    pub fn value(&self) -> Option<Interval> {
+        Some(Interval { estimate: self.estimate?, low: self.low, high: self.high })
+    }
+
     /// A result without numbers yet: what is known before the first trial.
     pub fn new(asked: AskedQuery) -> Self {
-        Self {
-            asked,
-            verdict: None,
-            certifies: String::new(),
-            certificate: None,
-            estimate: None,
-            low: f64::NEG_INFINITY,
-            high: f64::INFINITY,
-            of: None,
-            against: false,
-            unit: String::new(),
-            interval: String::new(),
-            method: Method::default(),
-            consumed: ConsumedTrials::default(),
-            stopped_by: Stop::Plan,
-            replay: String::new(),
-            elapsed_s: 0.0,
-            censored: None,
-            warnings: Vec::new(),
-            witnesses: Vec::new(),
-            compare: None,
-            rank: None,
-            distribution: None,
-            rare: None,
-            evidence: None,
-        }
+        Self { asked, low: f64::NEG_INFINITY, high: f64::INFINITY, ..Self::default() }
     }
 }
 
@@ -206,7 +194,7 @@ pub struct Method {
 }
 
 /// Why sampling stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stop {
     /// A test crossed its boundary.
     Boundary,
@@ -216,6 +204,7 @@ pub enum Stop {
     /// the interval wide.
     Unresolved,
     /// The number of trials was planned beforehand.
+    #[default]
     Plan,
     /// The largest number of trials was reached.
     Cap,

@@ -269,12 +269,7 @@ impl Procedure {
         match self {
             Self::Test(_) => {
                 // An interval beside a test holds at its stopping time: that of the confidence sequence.
-                let reading = |successes| {
-                    let read = stats::Counts { successes, failures: counts.trials - successes };
-                    stats::sequence::interval(read, beside)
-                };
-                let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-                Some((around(share(counts), hull), Coverage::TimeUniform, beside))
+                Some((around(share(counts), sequence(counts, beside)), Coverage::TimeUniform, beside))
             }
             Self::Probability(estimator) => {
                 let interval = estimator.interval();
@@ -283,9 +278,8 @@ impl Procedure {
                 Some((around(estimate, interval), interval.coverage, interval.error))
             }
             Self::Mean { mean, .. } => {
-                let interval = mean.interval();
-                let (low, high) = mean.estimate();
-                Some((around(0.5 * (low + high), interval), interval.coverage, interval.error))
+                let (estimate, interval) = of_mean(mean);
+                Some((around(estimate, interval), interval.coverage, interval.error))
             }
             Self::Quantile { sample, level, delta, band } => {
                 // Where somebody or the clock ended it before its number of trials, it holds at all times.
@@ -368,8 +362,22 @@ fn empirical(values: &[f64]) -> Vec<Step> {
     steps
 }
 
-fn around(estimate: f64, interval: stats::Interval) -> Interval {
+pub(super) fn around(estimate: f64, interval: stats::Interval) -> Interval {
     Interval { estimate, low: interval.low, high: interval.high }
+}
+
+/// The confidence sequence of a probability, over both readings of unresolved trials.
+pub(super) fn sequence(counts: super::outcome::Counts, error: f64) -> stats::Interval {
+    let reading = |successes: u64| {
+        stats::sequence::interval(stats::Counts { successes, failures: counts.trials - successes }, error)
+    };
+    reading(counts.successes).hull(reading(counts.successes + counts.unresolved))
+}
+
+/// The estimate of a mean, in the middle between both readings of unresolved trials, and its interval.
+pub(super) fn of_mean(mean: &Mean) -> (f64, stats::Interval) {
+    let (low, high) = mean.estimate();
+    (0.5 * (low + high), mean.interval())
 }
 
 /// Share of successes; unresolved trials count half. Of no trials it is not a number.

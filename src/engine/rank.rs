@@ -11,7 +11,7 @@ use super::forecast::{self, PilotStatistics};
 use super::outcome::{Standing, Stop, next_after};
 use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
-use super::procedure::{outcome, value};
+use super::procedure::{self, of_mean, outcome, sequence, value};
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::lanes::LANES;
@@ -170,10 +170,7 @@ impl<'s> RankSampling<'s> {
         shows_evidence: bool,
     ) -> Result<Self, Fault> {
         let procedure = Procedure::new(&setup)?;
-        let range = match &setup.kind {
-            MeasureKind::Expectation { range, .. } => Some(*range),
-            _ => None,
-        };
+        let range = setup.kind.range();
         let arms = setup.options.len();
         let mut targets: Vec<Target> = Vec::new();
         let (mut jobs, mut job_of) = (Vec::new(), Vec::with_capacity(arms));
@@ -334,12 +331,7 @@ impl<'s> RankSampling<'s> {
         let seconds = pilot.seconds_per_trial(most_steps);
         self.ahead = pilot.is_complete().then_some(pilot);
         self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
-        Ok(Forecast {
-            query: self.query.text.clone(),
-            settings: self.query.settings.clone(),
-            trials,
-            seconds: trials.likely as f64 * seconds,
-        })
+        Ok(Forecast::of(self.query, trials, seconds))
     }
 
     /// Runs until the ranking is certified, or the budget is spent; `None` if its share of the time is over before, and
@@ -405,19 +397,8 @@ impl<'s> RankSampling<'s> {
         let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
         let values = (0..arms)
             .map(|arm| match means.get(arm) {
-                Some(mean) => {
-                    let (low, high) = mean.estimate();
-                    (0.5 * (low + high), mean.interval())
-                }
-                None => {
-                    let counts = tallies[arm].counts;
-                    let reading = |successes: u64| {
-                        let read = stats::Counts { successes, failures: counts.trials - successes };
-                        stats::sequence::interval(read, delta)
-                    };
-                    let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-                    (super::procedure::share(counts), hull)
-                }
+                Some(mean) => of_mean(mean),
+                None => (procedure::share(tallies[arm].counts), sequence(tallies[arm].counts, delta)),
             })
             .collect();
         let finished = self.procedure.finished();

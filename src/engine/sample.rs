@@ -102,13 +102,7 @@ impl Monitors for Watching<'_> {
             let way = &mut self.ways[lane];
             let seen = way.len() / agents.len().max(1);
             if ticks.get(seen) == Some(&state.ticks[lane]) {
-                way.extend(agents.iter().map(|agent| {
-                    let slot = state.slot(agent.0 as usize, lane);
-                    Vec2::new(
-                        state.motion.x[slot.block].0[slot.lane],
-                        state.motion.y[slot.block].0[slot.lane],
-                    )
-                }));
+                way.extend(agents.iter().map(|agent| state.position(state.slot(agent.0 as usize, lane))));
             }
             if way.len() >= agents.len() * ticks.len() && (self.decided.has(lane) || !self.asks) {
                 over |= Mask::lane(lane);

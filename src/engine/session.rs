@@ -19,7 +19,7 @@ use super::rank::{RankSampling, RankSetup};
 use super::splitting::Question;
 use super::tally::Tally;
 use super::watch::{CallForecast, Forecast, Watch};
-use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Query, Study};
 use crate::stats::Levels;
 use crate::stats::spec::Make;
 use crate::stats::splitting;
@@ -97,20 +97,16 @@ pub fn run(
     watch.finished();
     let trials = consumed(&asked, &results);
     let results: Vec<QueryResult> = results.into_iter().flatten().collect();
+    let title = if study.title.is_empty() { &call.line.scenario } else { &study.title };
     Ok(CallResult {
-        scenario: if study.title.is_empty() { call.line.scenario.clone() } else { study.title.clone() },
         tracks: study.tracks.clone(),
-        seed: call.seed,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        inputs: Vec::new(),
-        diagnostics: Vec::new(),
-        warnings: Vec::new(),
         trials,
         interrupted: budget.is_interrupted(),
         failure,
         replay: again(call, budget, &results),
         results,
         elapsed_s: budget.elapsed(),
+        ..CallResult::of(title, call.seed)
     })
 }
 
@@ -256,14 +252,6 @@ fn refused(query: &Query) -> impl Fn(Fault) -> Fault {
     }
 }
 
-/// The range of an expectation.
-fn range(measure: &Measure) -> Option<(f64, f64)> {
-    match measure.kind {
-        MeasureKind::Expectation { range, .. } => Some(range),
-        _ => None,
-    }
-}
-
 /// Results by the places of their queries.
 type Answered = Vec<(usize, QueryResult)>;
 
@@ -275,6 +263,10 @@ enum Turn<'q> {
     Paused(Box<Group<'q>>),
     /// It goes on in two groups, because the queries of the second hold the others up.
     Apart(Box<[Group<'q>; 2]>),
+}
+
+fn paused(places: Vec<usize>, sampling: Sampling<'_>) -> Turn<'_> {
+    Turn::Paused(Box::new(Group { places, sampling }))
 }
 
 /// What is wrong with the model, if the fault is one of it.
@@ -332,14 +324,8 @@ impl<'a> Session<'a> {
                     if values > MOST_VALUES {
                         return Err(Fault::Memory { place: query.span, values });
                     }
-                    (
-                        together,
-                        Sampling::Estimate(EstimateSampling::new(
-                            self.prepared(world)?,
-                            entries,
-                            self.call.seed,
-                        )),
-                    )
+                    let sampling = EstimateSampling::new(self.prepared(world)?, entries, self.call.seed);
+                    (together, Sampling::Estimate(sampling))
                 }
                 Ask::Compare { .. } => {
                     (vec![at], Sampling::Compare(self.compare(query).map_err(refused(query))?))
@@ -358,7 +344,7 @@ impl<'a> Session<'a> {
         Ok(EstimateEntry {
             query,
             column: measure.target.column,
-            range: range(measure),
+            range: measure.kind.range(),
             procedure: Procedure::new(&query.ask, self.call.seed)?,
             tally: Tally::default(),
             statistics: PilotStatistics::default(),
@@ -422,12 +408,7 @@ impl<'a> Session<'a> {
             Sampling::Estimate(mut estimate) => {
                 match estimate.run((executor, levels), budgets, watch)? {
                     Advance::Stopped => {}
-                    Advance::Paused => {
-                        return Ok(Turn::Paused(Box::new(Group {
-                            places,
-                            sampling: Sampling::Estimate(estimate),
-                        })));
-                    }
+                    Advance::Paused => return Ok(paused(places, Sampling::Estimate(estimate))),
                     Advance::Faulty(found) => {
                         broken = Some(flaw(found.fault)?);
                         // Those that had stopped before that trial do not know of it.
@@ -452,18 +433,11 @@ impl<'a> Session<'a> {
                 answers.estimate(estimate)
             }
             Sampling::Compare(mut compare) => match answers.compare(&mut compare, executor, share, watch) {
-                Ok(None) => {
-                    return Ok(Turn::Paused(Box::new(Group {
-                        places,
-                        sampling: Sampling::Compare(compare),
-                    })));
-                }
+                Ok(None) => return Ok(paused(places, Sampling::Compare(compare))),
                 result => result.map(Vec::from_iter),
             },
             Sampling::Rank(mut rank) => match answers.rank(&mut rank, executor, share, watch) {
-                Ok(None) => {
-                    return Ok(Turn::Paused(Box::new(Group { places, sampling: Sampling::Rank(rank) })));
-                }
+                Ok(None) => return Ok(paused(places, Sampling::Rank(rank))),
                 result => result.map(Vec::from_iter),
             },
             Sampling::Split(question) => {

@@ -1,8 +1,8 @@
 //! How options and sides stand: the tables of rankings and comparisons.
 
 use super::compare::Gap;
-use super::outcome::{Comparison, Counts, Interval, RankedOption, Ranking, Side, Status};
-use super::procedure;
+use super::outcome::{Comparison, Counts, RankedOption, Ranking, Side, Status};
+use super::procedure::{around, of_mean, sequence, share};
 use super::rank::RankOutcome;
 use crate::compile::study::RankOption;
 
@@ -11,30 +11,18 @@ pub(super) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparis
     let side = |at: usize| {
         let counts = compare.sides[at].counts;
         let known = counts.trials > counts.unresolved;
-        let value = if let Some(mean) = compare.means.get(at) {
-            let ((low, high), interval) = (mean.estimate(), mean.interval());
-            let estimate = if known { 0.5 * (low + high) } else { f64::NAN };
-            Interval { estimate, low: interval.low, high: interval.high }
-        } else {
-            let reading = |successes: u64| {
-                let read = crate::stats::Counts { successes, failures: counts.trials - successes };
-                crate::stats::sequence::interval(read, delta)
-            };
-            let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-            let estimate = if known { procedure::share(counts) } else { f64::NAN };
-            Interval { estimate, low: hull.low, high: hull.high }
+        let (estimate, interval) = match compare.means.get(at) {
+            Some(mean) => of_mean(mean),
+            None => (share(counts), sequence(counts, delta)),
         };
+        let value = around(if known { estimate } else { f64::NAN }, interval);
         Side { label: labels[at].clone(), value, counts }
     };
     let both_known = compare.sides.iter().all(|side| side.counts.trials > side.counts.unresolved);
     let difference = Side {
         label: "first - second".to_owned(),
-        value: Interval {
-            // Of nothing resolved on a side there is no difference.
-            estimate: if both_known { compare.estimate } else { f64::NAN },
-            low: compare.interval.low,
-            high: compare.interval.high,
-        },
+        // Of nothing resolved on a side there is no difference.
+        value: around(if both_known { compare.estimate } else { f64::NAN }, compare.interval),
         counts: Counts {
             trials: compare.pairs,
             successes: compare.alone.0,
@@ -75,7 +63,7 @@ pub(super) fn ranked(ranked: &RankOutcome, options: &[RankOption]) -> Ranking {
             RankedOption {
                 label: options[arm].label.clone(),
                 settings: options[arm].settings.clone(),
-                value: Interval { estimate, low: interval.low, high: interval.high },
+                value: around(estimate, interval),
                 counts: ranked.tallies[arm].counts,
                 status,
             }

@@ -1,5 +1,7 @@
 //! Somebody who watches a run: progress and forecasts.
 
+use crate::compile::study::Query;
+
 /// What a query is likely to take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forecast {
@@ -38,6 +40,12 @@ impl Likely {
 }
 
 impl Forecast {
+    /// Of a query, of which each trial takes some seconds.
+    pub(super) fn of(query: &Query, trials: Likely, seconds: f64) -> Self {
+        let (text, settings) = (query.text.clone(), query.settings.clone());
+        Self { query: text, settings, trials, seconds: trials.likely as f64 * seconds }
+    }
+
     /// Seconds of the fewest and of the most trials.
     pub fn seconds_between(&self) -> (f64, f64) {
         let each = self.seconds / self.trials.likely.max(1) as f64;

@@ -19,15 +19,17 @@ use crate::kernel::{Address, Run};
 
 /// The trials that show why a measure of truth values came out as it did.
 pub(super) fn sides(tally: &Tally) -> Vec<(Shows, u64)> {
-    let pick = |shows, index: Option<u64>| index.map(|index| (shows, index));
-    [pick(Shows::Fails, tally.first[1]), pick(Shows::Holds, tally.first[0])].into_iter().flatten().collect()
+    named([(Shows::Fails, tally.first[1]), (Shows::Holds, tally.first[0])])
 }
 
 /// The trials that show how far a metric ranges.
 pub(super) fn extremes(tally: &Tally) -> Vec<(Shows, u64)> {
-    let pick = |shows, extreme: Option<(u64, f64)>| extreme.map(|(index, _)| (shows, index));
-    let found = [pick(Shows::Lowest, tally.extremes[0]), pick(Shows::Highest, tally.extremes[1])];
-    found.into_iter().flatten().collect()
+    let [lowest, highest] = tally.extremes.map(|extreme| extreme.map(|(index, _)| index));
+    named([(Shows::Lowest, lowest), (Shows::Highest, highest)])
+}
+
+fn named(picks: [(Shows, Option<u64>); 2]) -> Vec<(Shows, u64)> {
+    picks.into_iter().filter_map(|(shows, index)| Some((shows, index?))).collect()
 }
 
 /// The witnesses of a column: `picks` names the trials, and what they are witnesses of.
@@ -65,19 +67,11 @@ fn witness(
     if let Some(label) = label(prepared, advice) {
         command.push_str(&format!(" --move '{label}'"));
     }
+    let (what, decider, agents) = Default::default();
+    let blank = Witness { shows, trial, value: None, time: 0.0, unit, what, decider, agents, command };
     if program.scenario.clock.is_jumps() {
         let (time, value, what) = recall::decision(prepared, column, (trial, call.seed), dimension, budget)?;
-        return Some(Witness {
-            shows,
-            trial,
-            value,
-            time,
-            unit,
-            what,
-            decider: None,
-            agents: Vec::new(),
-            command,
-        });
+        return Some(Witness { value, time, what, ..blank });
     }
     let mut group = prepared.group(&[column]).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
@@ -105,18 +99,7 @@ fn witness(
             let seconds = |tick: u64| program.scenario.clock.seconds(Tick(tick));
             let end = seconds(state.ticks[0]);
             let what = format!("outside its range by an unknown amount: the trial ends at {end} {unit}");
-            let time = left.map_or(end, seconds);
-            return Some(Witness {
-                shows,
-                trial,
-                value: None,
-                time,
-                unit,
-                what,
-                decider: None,
-                agents: Vec::new(),
-                command,
-            });
+            return Some(Witness { time: left.map_or(end, seconds), what, ..blank });
         }
         let readings = &group.readings;
         group.observers[0].observe(lane, readings);
@@ -163,19 +146,7 @@ fn witness(
                 _ => None,
             };
             if record.is_full() {
-                let time = program.scenario.clock.seconds(now);
-                let what = String::new();
-                return Some(Witness {
-                    shows,
-                    trial,
-                    value,
-                    time,
-                    unit,
-                    what,
-                    decider: None,
-                    agents: Vec::new(),
-                    command,
-                });
+                return Some(Witness { value, time: program.scenario.clock.seconds(now), ..blank });
             }
             let (at, said) = blame::margin(prepared, root, (value, dimension), (&record, budget), state_at);
             (value, at.unwrap_or(now), said)
@@ -191,7 +162,7 @@ fn witness(
     };
     let time = program.scenario.clock.seconds(at);
     let Said { words: what, decider, agents } = said;
-    Some(Witness { shows, trial, value, time, unit, what, decider, agents, command })
+    Some(Witness { value, time, what, decider, agents, ..blank })
 }
 
 /// Most states that are kept of a trial, and that number times that of agents.

@@ -165,13 +165,8 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     dispatch!(scratch.level, simd => finish(simd, program, state, scratch));
 }
 
-/// Continuous time: every occupied lane goes to its next jump, if that comes up to and with the horizon. Returns
-/// the lanes that did; the times are in `state.clocks`. In others nothing more happens.
-pub fn jump(program: &Program, state: &mut State, scratch: &mut Scratch) -> Mask {
-    jump_until(program, state, scratch, &[f64::INFINITY; LANES])
-}
-
-/// The same up to and with a time of each lane, s, or the horizon if that comes first.
+/// Continuous time: every occupied lane goes to its next jump, if that comes up to and with a time of each lane, s, and the
+/// horizon. Returns the lanes that did; the times are in `state.clocks`. In others nothing more happens.
 pub fn jump_until(program: &Program, state: &mut State, scratch: &mut Scratch, until: &[f64; LANES]) -> Mask {
     let last = program.processes.last();
     let until = until.map(|time| if time < last { time } else { last });

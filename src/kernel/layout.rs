@@ -1,6 +1,7 @@
 //! What the eight slots of a block are, and where an agent of a trial is kept.
 
-use crate::base::lanes::{LANES, Mask};
+use crate::base::geometry::Vec2;
+use crate::base::lanes::{LANES, Lanes, Mask};
 
 /// What the eight slots of a block are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,20 @@ pub struct Slot {
     pub block: usize,
     /// Place in the block.
     pub lane: usize,
+}
+
+impl Slot {
+    /// The number of a field here.
+    #[inline(always)]
+    pub fn of(self, field: &[Lanes]) -> f64 {
+        field[self.block].0[self.lane]
+    }
+
+    /// The vector of two fields here.
+    #[inline(always)]
+    pub fn vector(self, x: &[Lanes], y: &[Lanes]) -> Vec2 {
+        Vec2::new(self.of(x), self.of(y))
+    }
 }
 
 impl Layout {

@@ -32,7 +32,7 @@ pub mod state;
 mod vector;
 
 pub use code::{Code, Readings, Voronoi};
-pub use dynamics::{Scratch, jump, refresh, step};
+pub use dynamics::{Scratch, refresh, step};
 pub use near::Close;
 pub use passing::is_crossed;
 pub use program::Program;

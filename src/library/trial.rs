@@ -2,7 +2,7 @@
 
 use crate::base::geometry::Vec2;
 use crate::base::tick::{Clock, Tick};
-use crate::kernel::{Address, End, Program, Run, State, start};
+use crate::kernel::{Address, End, Program, Run, Slot, State, start};
 use crate::model::{AgentId, Parameter, Scenario};
 use std::sync::Arc;
 
@@ -30,16 +30,12 @@ impl Trial {
     fn snapshot(&self) -> Snapshot {
         let state = self.run.state();
         let slots = (0..self.scenario.agents.len()).map(|agent| (agent, state.slot(agent, 0)));
-        let present = slots.filter(|(_, slot)| state.present[slot.block].has(slot.lane));
-        let body = |(agent, slot): (usize, crate::kernel::Slot)| {
-            let at = |field: &[crate::base::lanes::Lanes]| field[slot.block].0[slot.lane];
-            let arrival = state.queues.arrival(&self.scenario.sources, AgentId(agent as u32), 0);
-            AgentState {
-                name: arrival.unwrap_or_else(|| self.scenario.agents[agent].name.clone()),
-                position: Vec2::new(at(&state.motion.x), at(&state.motion.y)),
-                velocity: Vec2::new(at(&state.motion.vx), at(&state.motion.vy)),
-                radius: at(&state.bodies[Parameter::Radius]),
-            }
+        let present = slots.filter(|(_, slot)| state.is_present(*slot));
+        let body = |(agent, slot): (usize, Slot)| AgentState {
+            name: state.name_of(&self.scenario, AgentId(agent as u32), 0),
+            position: state.position(slot),
+            velocity: state.velocity(slot),
+            radius: slot.of(&state.bodies[Parameter::Radius]),
         };
         let variables = self.scenario.processes.variables.iter().zip(&state.variables);
         Snapshot {

@@ -1,7 +1,7 @@
 //! The scene: what stands still.
 
 use super::period::Periods;
-use crate::base::geometry::{Segment, Shape, Vec2};
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
@@ -37,6 +37,22 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The pieces of all walls.
+    pub fn walls(&self) -> impl Iterator<Item = &Segment> + Clone {
+        self.barriers.iter().flat_map(|barrier| match &barrier.obstacle {
+            Obstacle::Wall(pieces) => pieces.as_slice(),
+            Obstacle::Solid(_) => &[],
+        })
+    }
+
+    /// The shapes of all obstacles that are solid.
+    pub fn solids(&self) -> impl Iterator<Item = &Shape> + Clone {
+        self.barriers.iter().filter_map(|barrier| match &barrier.obstacle {
+            Obstacle::Wall(_) => None,
+            Obstacle::Solid(shape) => Some(shape),
+        })
+    }
+
     /// The barriers, and behind them their images one period away, all in the same order: what is seen and felt from a place
     /// of the scene.
     pub fn unrolled(&self) -> Cow<'_, [Barrier]> {
@@ -107,6 +123,14 @@ impl Barrier {
 }
 
 impl Obstacle {
+    /// The rectangle around it; none without a piece.
+    pub fn bounds(&self) -> Option<Bounds> {
+        match self {
+            Self::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
+            Self::Solid(shape) => Some(shape.bounds()),
+        }
+    }
+
     /// The point of the barrier's surface nearest to `p`.
     pub fn nearest_on_surface(&self, p: Vec2) -> Vec2 {
         match self {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOVING: f64 = 0.5;
 
 /// Agreement of inferred groups with annotated ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct GroupScore {
     /// Annotated groups whose members were all in view at some instant.
     pub annotated: usize,

@@ -4,7 +4,7 @@ use super::assignment::Costs;
 use std::collections::BTreeMap;
 
 /// Agreement of traces with tracks.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct TrackScore {
     /// Annotated tracks.
     pub tracks: usize,

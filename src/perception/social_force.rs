@@ -6,7 +6,6 @@ use super::motion::Motion;
 use super::trace::TracePoint;
 use crate::base::decimal::Decimal;
 use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::presets;
 use crate::kernel::Program;
@@ -163,10 +162,8 @@ fn finish(mut run: Run<'_>, places: impl Iterator<Item = usize>, moved: &mut [Wa
     let state = run.state();
     for (agent, place) in places.enumerate() {
         let slot = state.slot(agent, 0);
-        let vector =
-            |x: &[Lanes], y: &[Lanes]| Vec2::new(x[slot.block].0[slot.lane], y[slot.block].0[slot.lane]);
-        moved[place].position = vector(&state.motion.x, &state.motion.y);
-        moved[place].velocity = vector(&state.motion.vx, &state.motion.vy);
+        moved[place].position = state.position(slot);
+        moved[place].velocity = state.velocity(slot);
     }
 }
 

@@ -16,13 +16,17 @@ const NEVER: f64 = 1e9;
 
 /// What happens where there are more observations than traces, or fewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Padding {
-    /// As published: dummy entries at the largest distance, and the threshold after the assignment. It can exchange
-    /// people when one leaves as another enters.
-    Printed,
-    /// A pair beyond the threshold is no pair; leaving an observation and a trace unmatched costs the threshold together.
+    /// Pairs beyond the threshold are no pairs.
+    ///
+    /// Leaving an observation and a trace unmatched costs the threshold together.
     #[default]
     Gated,
+    /// As published: dummy entries at the largest distance.
+    ///
+    /// The threshold comes after the assignment. It can exchange people when one leaves as another enters.
+    Printed,
 }
 
 /// Options of a [`Tracker`].

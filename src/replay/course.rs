@@ -5,8 +5,9 @@ use crate::data::tracks::Recording;
 
 /// What is taken of people after the end of their track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Beyond {
-    /// Nothing: what needs them is unresolved.
+    /// What needs them is unresolved.
     Unresolved,
     /// They go on with their last velocity.
     Onward,

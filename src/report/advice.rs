@@ -3,6 +3,7 @@
 use crate::advise::{Advice, Walked};
 use crate::base::geometry::Vec2;
 use crate::data::tracks::Velocity;
+use crate::report::number::thousandths as millis;
 use serde_json::{Value, json};
 
 /// Version of the form.
@@ -53,7 +54,7 @@ pub fn line(advice: &Advice, velocity: Velocity, used_ms: f64) -> String {
         "groups": groups,
         "people": advice.people,
         "followed": advice.followed,
-        "used_ms": (used_ms * 1e3).round() / 1e3,
+        "used_ms": millis(used_ms),
         "notes": advice.notes,
     });
     format!("{object}\n")
@@ -73,12 +74,6 @@ pub fn end(advised: &Walked, recorded: &Walked) -> String {
 
 fn number(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
-}
-
-/// To a thousandth: sensors are no better.
-fn millis(value: f64) -> f64 {
-    let rounded = (value * 1e3).round() / 1e3;
-    if rounded == 0.0 { 0.0 } else { rounded }
 }
 
 fn vector(direction: Option<Vec2>) -> Value {

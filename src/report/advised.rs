@@ -7,7 +7,7 @@ use crate::engine::outcome::{CallResult, Interval};
 use crate::engine::traces::{Traces, Walk, recorded};
 use crate::model::Scene;
 use crate::report::html::{Page, Table};
-use crate::report::number::{count, interval, plain};
+use crate::report::number::{count, interval, plain, thousandths};
 use crate::syntax::source::Source;
 use std::collections::BTreeMap;
 
@@ -47,13 +47,7 @@ pub fn to_page(advised: Advised, sources: &[Source]) -> Page<'_> {
         warnings.push(format!("the player leaves out {} observations without an id", count(unnamed)));
     }
     Page {
-        run: CallResult {
-            scenario: title,
-            seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            warnings,
-            ..CallResult::default()
-        },
+        run: CallResult { warnings, ..CallResult::of(title, seed) },
         sources,
         tables,
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
@@ -94,7 +88,7 @@ fn walks(advised: &Advised) -> (Vec<Walk>, u64) {
 
 /// Time to a thousandth, without a rounding error at its end.
 fn seconds(time: f64) -> String {
-    plain((time * 1e3).round() / 1e3)
+    plain(thousandths(time))
 }
 
 fn cycles_table(cycles: &[Advice]) -> Table {

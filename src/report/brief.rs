@@ -4,7 +4,7 @@ use super::palette::{Paint, Palette};
 use super::phrase::{one_line, settings};
 use super::text::columns::{Cell, lines};
 use super::text::{by_query, printed, word};
-use crate::engine::outcome::{CallResult, Interval, QueryResult};
+use crate::engine::outcome::{CallResult, QueryResult};
 use crate::report::number::counted;
 use std::fmt::Write as _;
 
@@ -29,9 +29,7 @@ fn row(result: &QueryResult) -> Vec<Cell> {
     let (word, paint) = word(result);
     let query = one_line(&result.asked.text);
     let asked = query.strip_prefix(word).map_or(query.as_str(), str::trim_start);
-    let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
-        printed(result, &Interval { estimate, low: result.low, high: result.high })
-    });
+    let (estimate, interval) = result.value().map(|value| printed(result, &value)).unwrap_or_default();
     let choice = result.rank.as_ref().map(|ranking| ranking.choice.as_deref().unwrap_or("no choice"));
     vec![
         Cell::left(word).paint(paint),

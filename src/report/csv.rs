@@ -7,43 +7,46 @@
 
 use super::phrase::one_line;
 use super::setting;
-use crate::engine::outcome::{CallResult, Counts, Interval, QueryResult, Verdict};
+use crate::engine::outcome::{CallResult, Counts, Interval, QueryResult, RankedOption, Side, Verdict};
+
+/// A column: its name, and what is in it.
+type Column = (&'static str, fn(&Row<'_>) -> String);
 
 /// Columns that every table has, before those of procedures and settings.
-const COLUMNS: [&str; 27] = [
-    "query",
-    "name",
-    "text",
-    "file",
-    "line",
-    "kind",
-    "row",
-    "option",
-    "verdict",
-    "status",
-    "estimate",
-    "low",
-    "high",
-    "unit",
-    "of",
-    "interval",
-    "gap",
-    "trials",
-    "successes",
-    "failures",
-    "unresolved",
-    "clipped",
-    "steps",
-    "stopped by",
-    "method",
-    "seed",
-    "elapsed (s)",
+const COLUMNS: [Column; 27] = [
+    ("query", |row| row.result.asked.index.to_string()),
+    ("name", |row| row.result.asked.name.clone().unwrap_or_default()),
+    ("text", |row| one_line(&row.result.asked.text)),
+    ("file", |row| row.result.asked.file.clone()),
+    ("line", |row| row.result.asked.line.to_string()),
+    ("kind", |row| row.result.asked.kind.name().to_owned()),
+    ("row", |row| row.kind.to_owned()),
+    ("option", |row| row.label.to_owned()),
+    ("verdict", |row| row.of_whole(|result| result.verdict.map_or("", Verdict::name).to_owned())),
+    ("status", |row| row.status.to_owned()),
+    ("estimate", |row| number(row.value.estimate)),
+    ("low", |row| number(row.value.low)),
+    ("high", |row| number(row.value.high)),
+    ("unit", |row| row.result.unit.clone()),
+    ("of", |row| row.result.of.clone().unwrap_or_default()),
+    ("interval", |row| row.result.interval.clone()),
+    ("gap", |row| row.of_whole(|result| result.rank.as_ref().map_or(String::new(), |rank| number(rank.gap)))),
+    ("trials", |row| row.counts.trials.to_string()),
+    ("successes", |row| row.counts.successes.to_string()),
+    ("failures", |row| row.counts.failures.to_string()),
+    ("unresolved", |row| row.counts.unresolved.to_string()),
+    ("clipped", |row| row.of_whole(|result| result.consumed.clipped.to_string())),
+    ("steps", |row| row.of_whole(|result| result.consumed.steps.to_string())),
+    ("stopped by", |row| row.of_whole(|result| result.stopped_by.name().to_owned())),
+    ("method", |row| row.result.method.name.clone()),
+    ("seed", |row| row.seed.to_string()),
+    ("elapsed (s)", |row| row.of_whole(|result| result.elapsed_s.to_string())),
 ];
 
 /// The table of a run, ending with a line end.
 pub fn render(run: &CallResult) -> String {
     let results = super::text::by_query(&run.results);
-    let rows: Vec<Row> = results.iter().flat_map(|result| rows(result)).collect();
+    let rows: Vec<Row> = results.iter().flat_map(|result| rows(result, run.seed)).collect();
     let (mut methods, mut settings) = (Vec::new(), Vec::new());
     for row in &rows {
         add(&mut methods, row.result.method.numbers.iter().map(|(name, _)| name.clone()));
@@ -51,7 +54,7 @@ pub fn render(run: &CallResult) -> String {
     }
     let mut table = csv::Writer::from_writer(Vec::new());
     // Writing into memory does not fail.
-    let header = COLUMNS.iter().map(|column| (*column).to_owned());
+    let header = COLUMNS.iter().map(|(name, _)| (*name).to_owned());
     let _ = table.write_record(header.chain(methods.iter().cloned()).chain(settings.iter().cloned()));
     for row in &rows {
         let of_method = |name: &String| {
@@ -61,7 +64,7 @@ pub fn render(run: &CallResult) -> String {
         let of_setting = |header: &String| {
             row.settings().find(|(known, _)| known == header).map_or(String::new(), |(_, value)| value)
         };
-        let cells = row.cells(run.seed).into_iter();
+        let cells = COLUMNS.iter().map(|(_, cell)| cell(row));
         let _ = table
             .write_record(cells.chain(methods.iter().map(of_method)).chain(settings.iter().map(of_setting)));
     }
@@ -78,6 +81,7 @@ fn add(all: &mut Vec<String>, names: impl Iterator<Item = String>) {
 }
 
 /// One row: a result, or a part of it.
+#[derive(Clone, Copy)]
 struct Row<'a> {
     result: &'a QueryResult,
     /// `result`, `option`, `first`, `second` or `difference`.
@@ -88,12 +92,13 @@ struct Row<'a> {
     counts: Counts,
     /// Settings beside those of the result.
     own: &'a [(String, String)],
+    seed: u64,
 }
 
-fn rows(result: &QueryResult) -> Vec<Row<'_>> {
+fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
     let estimate = result.estimate.unwrap_or(f64::NAN);
     let chosen = result.rank.as_ref().and_then(|ranking| ranking.choice.as_deref());
-    let mut rows = vec![Row {
+    let whole = Row {
         result,
         kind: "result",
         label: chosen.unwrap_or_default(),
@@ -101,31 +106,23 @@ fn rows(result: &QueryResult) -> Vec<Row<'_>> {
         value: Interval { estimate, low: result.low, high: result.high },
         counts: result.consumed.counts,
         own: &[],
-    }];
+        seed,
+    };
+    let mut rows = vec![whole];
     if let Some(comparison) = &result.compare {
         let sides = [
             ("first", &comparison.first),
             ("second", &comparison.second),
             ("difference", &comparison.difference),
         ];
-        rows.extend(sides.map(|(kind, side)| Row {
-            result,
-            kind,
-            label: &side.label,
-            status: "",
-            value: side.value,
-            counts: side.counts,
-            own: &[],
+        rows.extend(sides.map(|(kind, side)| {
+            let Side { label, value, counts } = side;
+            Row { kind, label, status: "", value: *value, counts: *counts, ..whole }
         }));
     }
-    rows.extend(result.rank.iter().flat_map(|ranking| &ranking.options).map(|option| Row {
-        result,
-        kind: "option",
-        label: &option.label,
-        status: option.status.name(),
-        value: option.value,
-        counts: option.counts,
-        own: &option.settings,
+    rows.extend(result.rank.iter().flat_map(|ranking| &ranking.options).map(|option| {
+        let RankedOption { label, settings: own, value, counts, status } = option;
+        Row { kind: "option", label, status: status.name(), value: *value, counts: *counts, own, ..whole }
     }));
     rows
 }
@@ -140,40 +137,9 @@ impl Row<'_> {
         })
     }
 
-    fn cells(&self, seed: u64) -> [String; COLUMNS.len()] {
-        let Row { result, value, counts, .. } = self;
-        let whole = self.kind == "result";
-        let only = |text: String| if whole { text } else { String::new() };
-        let gap = result.rank.as_ref().map_or(String::new(), |ranking| number(ranking.gap));
-        [
-            result.asked.index.to_string(),
-            result.asked.name.clone().unwrap_or_default(),
-            one_line(&result.asked.text),
-            result.asked.file.clone(),
-            result.asked.line.to_string(),
-            result.asked.kind.name().to_owned(),
-            self.kind.to_owned(),
-            self.label.to_owned(),
-            only(result.verdict.map_or("", Verdict::name).to_owned()),
-            self.status.to_owned(),
-            number(value.estimate),
-            number(value.low),
-            number(value.high),
-            result.unit.clone(),
-            result.of.clone().unwrap_or_default(),
-            result.interval.clone(),
-            only(gap),
-            counts.trials.to_string(),
-            counts.successes.to_string(),
-            counts.failures.to_string(),
-            counts.unresolved.to_string(),
-            only(result.consumed.clipped.to_string()),
-            only(result.consumed.steps.to_string()),
-            only(result.stopped_by.name().to_owned()),
-            result.method.name.clone(),
-            seed.to_string(),
-            only(result.elapsed_s.to_string()),
-        ]
+    /// What only the row of a whole result has.
+    fn of_whole(&self, text: impl Fn(&QueryResult) -> String) -> String {
+        if self.kind == "result" { text(self.result) } else { String::new() }
     }
 }
 

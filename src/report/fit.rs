@@ -114,9 +114,7 @@ impl FittedModel {
             [one.parameter.name().to_owned(), unit, brief(one.start / size), brief(one.value / size), ends]
         };
         let rows = self.found.parameters.iter().map(row).collect();
-        for line in table(["parameter", "unit", "start", "fitted", "interval"], rows) {
-            let _ = writeln!(out, "  {line}");
-        }
+        table(&mut out, "  ", ["parameter", "unit", "start", "fitted", "interval"], rows);
         let _ = writeln!(out, "\n{}", self.score());
         let named = [("fitted to", &self.found.fitted), ("held out", &self.found.held_out)];
         let mut rows: Vec<_> =
@@ -124,9 +122,7 @@ impl FittedModel {
         if let Some((name, Some(of))) = &self.test {
             rows.push(self.comparison(name, of));
         }
-        for line in table(["persons", "number", "model", "fitted", "better by"], rows) {
-            let _ = writeln!(out, "  {line}");
-        }
+        table(&mut out, "  ", ["persons", "number", "model", "fitted", "better by"], rows);
         let _ = writeln!(out, "\n{}", self.block());
         let _ = writeln!(
             out,

@@ -17,8 +17,8 @@ pub fn text(total: &CallForecast) -> String {
             format!("{} to {}", count(least), counted(most, "trial"))
         };
         let query = super::phrase::one_line(query);
-        let under: Vec<String> = settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-        let under = if under.is_empty() { String::new() } else { format!("   {}", under.join(", ")) };
+        let under = super::phrase::listed(settings);
+        let under = if under.is_empty() { under } else { format!("   {under}") };
         text.push_str(&format!(
             "forecast: {trials}, {}: {query}{under}\n",
             between(forecast.seconds_between())

@@ -8,7 +8,7 @@ use super::setting;
 use crate::base::random;
 use crate::engine::outcome::{
     CallResult, Comparison, Counts, Distribution, Evidence, Finding, Interval, Method, QueryResult, Ranking,
-    Rare, Shows, Side, Snapshot, Standing, Witness,
+    Shows, Side, Snapshot, Standing, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -132,7 +132,7 @@ pub(super) fn result(result: &QueryResult) -> Value {
         put("distribution", distribution(found));
     }
     if let Some(found) = &result.rare {
-        put("splitting", rare(found));
+        put("splitting", json!(found));
     }
     if let Some(found) = &result.evidence {
         put("evidence", evidence(found));
@@ -206,25 +206,6 @@ fn witness(witness: &Witness, against: bool) -> Value {
         fields.insert("decided_by".to_owned(), by);
     }
     shown
-}
-
-fn rare(found: &Rare) -> Value {
-    json!({
-        "runs": found.runs,
-        "extinct": found.extinct,
-        "deviation": found.deviation,
-        "levels": found.levels,
-        "paths": found.paths,
-        "steps": found.steps,
-        "estimate": found.estimate,
-        "low": found.low,
-        "high": found.high,
-        "plain_low": found.plain_low,
-        "plain_high": found.plain_high,
-        "plain_bound": found.plain_bound,
-        "floor": found.floor,
-        "agrees": found.agrees,
-    })
 }
 
 fn evidence(found: &Evidence) -> Value {

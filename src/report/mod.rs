@@ -41,6 +41,7 @@ use crate::engine::outcome::CallResult;
 
 /// Formats of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Format {
     /// For people.
     #[default]
@@ -55,8 +56,6 @@ pub enum Format {
     Junit,
     /// Workflow commands of GitHub.
     Github,
-    /// A page that needs nothing but a browser.
-    Html,
 }
 
 impl Format {
@@ -75,7 +74,6 @@ pub fn render(run: &CallResult, format: Format, palette: Palette) -> String {
         Format::Json => json::render(run),
         Format::Junit => visible(&junit::render(run)).into_owned(),
         Format::Github => visible(&github::render(run)).into_owned(),
-        Format::Html => html::render(run),
     }
 }
 

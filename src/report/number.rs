@@ -96,6 +96,16 @@ fn leading(x: f64) -> (u8, i32) {
     (digit, exponent)
 }
 
+/// The exponent of a positive number in decimal digits.
+pub(super) fn exponent(x: f64) -> i32 {
+    format!("{x:e}").split_once('e').and_then(|(_, digits)| digits.parse().ok()).unwrap_or(0)
+}
+
+/// A power of ten.
+pub(super) fn power(exponent: i32) -> f64 {
+    format!("1e{exponent}").parse().unwrap_or(1.0)
+}
+
 fn fixed(x: f64, decimals: usize, round: Round) -> String {
     let print = |x: f64| {
         let text = format!("{x:.decimals$}");
@@ -103,7 +113,7 @@ fn fixed(x: f64, decimals: usize, round: Round) -> String {
     };
     let nearest = print(x);
     let Ok(value) = nearest.parse::<f64>() else { return nearest };
-    let unit = format!("1e-{decimals}").parse::<f64>().unwrap_or(0.0);
+    let unit = power(-(decimals as i32));
     match round {
         Round::Down if value > x => print(value - unit),
         Round::Up if value < x => print(value + unit),
@@ -115,7 +125,7 @@ fn fixed(x: f64, decimals: usize, round: Round) -> String {
 fn scientific(x: f64, round: Round) -> String {
     let nearest = format!("{x:.1e}");
     let Ok(value) = nearest.parse::<f64>() else { return nearest };
-    let unit = format!("1e{}", leading(value).1 - 1).parse::<f64>().unwrap_or(0.0);
+    let unit = power(leading(value).1 - 1);
     match round {
         Round::Down if value > x => format!("{:.1e}", value - unit),
         Round::Up if value < x => format!("{:.1e}", value + unit),
@@ -167,6 +177,11 @@ pub fn count(n: u64) -> String {
 /// A count and its noun: `1 trial`, `2 trials`.
 pub fn counted(n: u64, noun: &str) -> String {
     format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
+}
+
+/// A count and what is so many times: `2 unresolved`; nothing of none.
+pub fn some(n: u64, what: &str) -> String {
+    if n == 0 { String::new() } else { format!("{} {what}", count(n)) }
 }
 
 /// The unit in which people read a quantity of about this size, and how many of the given unit it has: times from 2 min

@@ -1,5 +1,7 @@
 //! Colours of a text report: the eight ANSI colours and two weights, or none.
 
+use crate::engine::outcome::Status;
+
 /// Paints words, or leaves them plain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Palette {
@@ -21,6 +23,31 @@ pub enum Paint {
     Strong,
     /// Stands back.
     Faint,
+}
+
+impl Paint {
+    /// Its class in a page.
+    pub(super) const fn class(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Bad => "bad",
+            Self::Caution => "caution",
+            Self::Neutral | Self::Strong => "plain",
+            Self::Faint => "faint",
+        }
+    }
+}
+
+/// How an option of a ranking looks.
+impl From<Status> for Paint {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Chosen => Self::Good,
+            Status::Tied => Self::Neutral,
+            Status::Beaten => Self::Faint,
+            Status::Open => Self::Caution,
+        }
+    }
 }
 
 impl Palette {

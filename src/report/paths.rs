@@ -126,18 +126,18 @@ pub fn map(scenario: &Scenario, paths: &[PlannedPath], instants: &[f64]) -> Stri
     if let Some(terrain) = paths.iter().find_map(|path| path.terrain.as_ref()) {
         let vertex = |k: u32| terrain.roadmap.vertices()[k as usize];
         for &(a, b) in terrain.roadmap.edges() {
-            drawing.line(&[vertex(a), vertex(b)], Ink::Roadmap);
+            drawing.line(&[vertex(a), vertex(b)], Ink::ROADMAP);
         }
     }
     for path in paths {
         let line = &path.course.path;
         let steps = (line.length() * 10.0).ceil().max(1.0) as u32;
         let at = |k: u32| line.at(line.length() * f64::from(k) / f64::from(steps)).position;
-        drawing.line(&(0..=steps).map(at).collect::<Vec<_>>(), Ink::Way);
-        drawing.dot(at(0), Ink::Start);
+        drawing.line(&(0..=steps).map(at).collect::<Vec<_>>(), Ink::WAY);
+        drawing.dot(at(0), Ink::START);
         for time in instants {
             let place = line.at(path.course.motion(*time).distance).position;
-            drawing.dot(place, Ink::Barrier);
+            drawing.dot(place, Ink::BARRIER);
             drawing.text(place + Vec2::new(0.0, 0.3), &format!("{} s", plain(*time)));
         }
         // Only who has several paths needs names for them.

@@ -9,13 +9,12 @@ pub(super) fn one_line(query: &str) -> String {
 
 /// `density = 0.2 /m^2, step = 0.02 s`
 pub(super) fn settings(result: &QueryResult) -> String {
-    result
-        .asked
-        .settings
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect::<Vec<_>>()
-        .join(", ")
+    listed(&result.asked.settings)
+}
+
+/// Settings with their names.
+pub(super) fn listed(settings: &[(String, String)]) -> String {
+    settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
 /// What values above all numbers are called: a time that does not come lies beyond the horizon, a distance to

@@ -47,17 +47,7 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error at a place.
     pub fn error(code: Code, span: Span, title: impl Into<String>) -> Self {
-        Self {
-            severity: Severity::Error,
-            code,
-            title: title.into(),
-            place: Some(Label { span, text: String::new() }),
-            related: Vec::new(),
-            hint: None,
-            hangs_on: Vec::new(),
-            is_formal: false,
-            comes_of: None,
-        }
+        Self { place: Some(Label { span, text: String::new() }), ..Self::placeless(code, title) }
     }
 
     /// A warning at a place.
@@ -115,5 +105,12 @@ impl Diagnostic {
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
+    }
+}
+
+/// Errors come in lists: so `?` makes a list of one.
+impl From<Diagnostic> for Vec<Diagnostic> {
+    fn from(one: Diagnostic) -> Self {
+        vec![one]
     }
 }

@@ -85,7 +85,11 @@ fn of_behaviours_that_turn_in_one_step_nothing_in_between_shows() {
                 assert_eq!(two.bits(agent, lane), one.bits(agent, lane), "{layout:?}, state {tick}");
             }
         }
-        assert!((0..2).all(|agent| two.state.lanes_of(&two.state.motion.x, agent).0[0] < 0.0), "towards b");
+        let x = |agent| {
+            let slot = two.state.slot(agent, 0);
+            two.state.motion.x[slot.block].0[slot.lane]
+        };
+        assert!((0..2).all(|agent| x(agent) < 0.0), "towards b");
     }
 }
 

@@ -1,9 +1,13 @@
 //! Traces of processes in continuous time: what must not change them, to the last bit.
 
 use super::{answered, compiled};
+use smc::base::lanes::LANES;
 use smc::base::random::TrialKey;
 use smc::kernel::process::Processes;
 use smc::kernel::{Program, Scratch, State, dynamics, start};
+
+/// Jumps up to the horizon.
+const NEVER: [f64; LANES] = [f64::INFINITY; LANES];
 
 /// Time and variables of every state of a trial, up to the horizon.
 pub(crate) fn trace(program: &Program, seed: u64, index: u64) -> Vec<(f64, Vec<f64>)> {
@@ -12,7 +16,7 @@ pub(crate) fn trace(program: &Program, seed: u64, index: u64) -> Vec<(f64, Vec<f
     let mut states = Vec::new();
     loop {
         states.push((state.clocks.now[0], state.variables.iter().map(|v| v.0[0]).collect()));
-        if dynamics::jump(program, &mut state, &mut scratch).is_empty() {
+        if dynamics::jump_until(program, &mut state, &mut scratch, &NEVER).is_empty() {
             return states;
         }
         assert!(state.faulty.is_empty());
@@ -123,7 +127,7 @@ fn a_lane_is_a_trial() {
         seen[lane].push(all(&state, lane));
     }
     loop {
-        let jumped = dynamics::jump(&program, &mut state, &mut scratch);
+        let jumped = dynamics::jump_until(&program, &mut state, &mut scratch, &NEVER);
         if jumped.is_empty() {
             break;
         }

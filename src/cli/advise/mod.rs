@@ -10,17 +10,18 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::page;
-use super::terminal::{Colors, print_to_reader, say};
+use super::terminal::{Colors, print_to_reader};
+use super::values::threads;
 use crate::advise::{Adviser, Advising, role};
 use crate::data::tracks::{Batch, Velocity};
 use crate::engine::budget::DEFAULT_TRIALS;
-use crate::engine::{Budget, Fault, Threads};
-use crate::library;
+use crate::engine::{Budget, Threads};
+use crate::library::Parsed;
 use crate::model::Scene;
 use crate::report::ExitCode as Exit;
 use crate::report::advice;
 use crate::report::advised::{Advised, to_page};
-use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::diagnostic::Diagnostic;
 use std::time::{Duration, Instant};
 
 /// What is kept of a deadline for writing the line.
@@ -28,33 +29,20 @@ const RESERVE: Duration = Duration::from_millis(2);
 
 /// Runs the command.
 pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
-    let (parsed, paths) = inputs::parse(&arguments.model, &arguments.properties);
-    let refuse = |errors: &[Diagnostic]| {
-        complaint::tell_all(errors, &parsed.inputs.sources, colors);
-        Exit::Wrong
-    };
-    complaint::diagnose(&parsed.inputs, colors);
-    if parsed.inputs.diagnostics.iter().any(|one| one.severity == Severity::Error) {
+    let Some((parsed, paths)) = inputs::parse_or_tell(&arguments.model, &arguments.properties, colors) else {
         return Exit::Wrong;
-    }
-    if let Err(error) = output::guard(arguments.report.as_deref(), &paths) {
-        return refuse(&[error]);
-    }
-    let role = match role(&parsed.scenario) {
-        Ok(role) => role,
-        Err(error) => return refuse(&[error]),
     };
-    let threads = match Threads::new(arguments.threads) {
-        Ok(threads) => threads,
-        Err(error) => return refuse(&[library::refusal(&Fault::Threads(error.to_string()))]),
-    };
-    let recording = match &arguments.replay {
-        Some(name) => match replay::batches(&parsed, name, arguments) {
-            Ok(batches) => Some(batches),
-            Err(error) => return refuse(&[error]),
-        },
-        None => None,
-    };
+    let done =
+        output::guard(arguments.report.as_deref(), &paths).and_then(|()| advise(arguments, &parsed, colors));
+    complaint::end(done, &parsed.inputs.sources, colors)
+}
+
+/// Answers all batches.
+fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<Exit, Diagnostic> {
+    let role = role(&parsed.scenario)?;
+    let threads = threads(arguments.threads)?;
+    let replayed = arguments.replay.as_ref();
+    let recording = replayed.map(|name| replay::batches(parsed, name, arguments)).transpose()?;
     let options = Advising {
         seed: arguments.seed,
         user: arguments.user,
@@ -67,11 +55,8 @@ pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
         Some(recording) => replay::run(&mut caller, &recording),
         None => stream::run(&mut caller),
     };
-    let exit = match done {
-        Ok(()) => Exit::Success,
-        Err(errors) => refuse(&errors),
-    };
-    let Some(path) = &arguments.report else { return exit };
+    let exit = complaint::end(done.map(|()| Exit::Success), &parsed.inputs.sources, colors);
+    let Some(path) = &arguments.report else { return Ok(exit) };
     let scenario = caller.adviser.scenario();
     let title = scenario.map(|scenario| scenario.title.clone()).filter(|title| !title.is_empty());
     let advised = Advised {
@@ -81,7 +66,7 @@ pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
         user: caller.adviser.user(),
         ..caller.shown
     };
-    exit.worse(page::write(path, to_page(advised, &parsed.inputs.sources), colors))
+    Ok(exit.worse(page::write(path, to_page(advised, &parsed.inputs.sources), colors)))
 }
 
 /// What answers batches.
@@ -107,16 +92,11 @@ impl Caller<'_> {
         if self.arguments.report.is_some() {
             self.shown.cycles.push(found);
         }
-        print_to_reader(&line).map_err(|reason| vec![complaint::output(reason)])
+        Ok(print_to_reader(&line)?)
     }
 
     /// Whether velocities are differences of positions.
     fn sees(&self) -> bool {
         self.arguments.velocity == Velocity::Seen
     }
-}
-
-/// Says that a line is left out.
-fn skipped(reason: &str) {
-    say(&format!("warning: {}\n", crate::base::visible::visible(reason)));
 }

@@ -67,7 +67,7 @@ pub(super) fn run(caller: &mut Caller<'_>, batches: &[Batch]) -> Result<(), Vec<
     let user = caller.adviser.user();
     if !batches.iter().flat_map(|batch| &batch.seen).any(|one| one.id == Some(user)) {
         let said = format!("person {user} is not in the recording");
-        return Err(vec![complaint::argument(said, "choose another `--user`")]);
+        return Err(complaint::argument(said, "choose another `--user`").into());
     }
     let from = arguments.from.unwrap_or(f64::NEG_INFINITY) - 1e-6;
     let to = arguments.to.unwrap_or(f64::INFINITY) + 1e-6;
@@ -121,7 +121,7 @@ pub(super) fn run(caller: &mut Caller<'_>, batches: &[Batch]) -> Result<(), Vec<
         let line = advice::end(&as_advised, &as_recorded);
         caller.shown.end = Some([as_advised, as_recorded]);
         caller.shown.followed = advised.points;
-        print_to_reader(&line).map_err(|reason| vec![complaint::output(reason)])?;
+        print_to_reader(&line)?;
     }
     Ok(())
 }

@@ -1,8 +1,9 @@
 //! Batches from standard input, as JSON lines.
 
-use super::{Caller, skipped};
+use super::Caller;
 use crate::advise::Cycles;
 use crate::cli::complaint;
+use crate::cli::terminal::warn;
 use crate::data::tracks::read_batch;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -16,7 +17,7 @@ pub(super) fn run(caller: &mut Caller<'_>) -> Result<(), Vec<Diagnostic>> {
         line.clear();
         let length = input
             .read_until(b'\n', &mut line)
-            .map_err(|error| vec![complaint::input(format!("standard input {error}"))])?;
+            .map_err(|error| complaint::input(format!("standard input {error}")))?;
         if length == 0 {
             break;
         }
@@ -32,9 +33,9 @@ pub(super) fn run(caller: &mut Caller<'_>) -> Result<(), Vec<Diagnostic>> {
                 let said = format!("line {number}{place}: {}", error.message);
                 if caller.arguments.strict {
                     let hint = "remove `--strict` to skip such lines";
-                    return Err(vec![Diagnostic::placeless(Code::E0702, said).hint(hint)]);
+                    return Err(Diagnostic::placeless(Code::E0702, said).hint(hint).into());
                 }
-                skipped(&format!("{said}; the line is skipped"));
+                warn(&format!("warning: {said}; the line is skipped\n"));
                 continue;
             }
         };

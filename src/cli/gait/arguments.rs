@@ -1,5 +1,6 @@
 //! The options of `smc gait`.
 
+use crate::cli::values::TextFormat;
 use crate::data::mocap::{Layout, Up, bvh_preset};
 use crate::gait::model::Residuals;
 use crate::gait::steps::Contact;
@@ -163,15 +164,6 @@ pub(in crate::cli) struct ShowCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     pub(super) format: TextFormat,
-}
-
-/// Formats of `smc gait show` and `smc gait score`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum TextFormat {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
 }
 
 /// `smc gait sample`

@@ -1,10 +1,11 @@
 //! `smc gait fit` and `smc gait score`.
 
-use super::arguments::{FitCommand, Learning, Reading, ScoreCommand, TextFormat};
+use super::arguments::{FitCommand, Learning, Reading, ScoreCommand};
 use super::takes::Takes;
-use super::{Stop, open, told, write};
+use super::{Stop, open, told};
 use crate::base::visible::visible;
-use crate::cli::terminal::Colors;
+use crate::cli::terminal::{Colors, print};
+use crate::cli::values::TextFormat;
 use crate::cli::{complaint, output};
 use crate::gait::RecordedStep;
 use crate::gait::model::{self, FitError, Method, Options, Scores, Warning};
@@ -32,19 +33,17 @@ impl Learning {
     }
 }
 
-fn unfitted(error: &FitError) -> Stop {
+fn unfitted(error: &FitError) -> Diagnostic {
     let hint = match error {
-        FitError::Variance(_) => {
-            return vec![complaint::argument(error.to_string(), "write `--variance 0.95`")];
-        }
-        FitError::Inducing(_) => return vec![complaint::argument(error.to_string(), "write `--sparse 128`")],
+        FitError::Variance(_) => return complaint::argument(error.to_string(), "write `--variance 0.95`"),
+        FitError::Inducing(_) => return complaint::argument(error.to_string(), "write `--sparse 128`"),
         FitError::TooFewPairs { .. } | FitError::OneSided { .. } => {
             "add takes; a pair is two steps of one take, one after the other"
         }
         FitError::NotFinite { .. } => "remove the take",
         FitError::NoVariation(_) | FitError::Singular(_) => "add takes of other walks",
     };
-    vec![Diagnostic::placeless(Code::E0722, error.to_string()).hint(hint)]
+    Diagnostic::placeless(Code::E0722, error.to_string()).hint(hint)
 }
 
 fn warn(warnings: &[Warning], colors: Colors) {
@@ -61,14 +60,14 @@ fn warn(warnings: &[Warning], colors: Colors) {
 pub(super) fn fit(command: &FitCommand, colors: Colors) -> Result<(), Stop> {
     let takes = Takes::read(&command.reading);
     told(&takes, colors)?;
-    output::guard(Some(&command.output), &takes.paths).map_err(|error| vec![error])?;
+    output::guard(Some(&command.output), &takes.paths)?;
     let (source, license) = (command.source_note.clone(), command.license.clone());
     let options = Options { source, license, ..command.learning.options() };
     let (gait, warnings) = model::fit(&takes.steps(), &options).map_err(|error| unfitted(&error))?;
     warn(&warnings, colors);
-    let text = gait.to_json().map_err(|error| vec![complaint::output(error.to_string())])?;
-    write(Some(&command.output), &text)?;
-    write(None, &visible(&reports::to_text(&gait.show())))
+    let text = gait.to_json().map_err(|error| complaint::output(error.to_string()))?;
+    output::save(&command.output, text.as_bytes())?;
+    Ok(print(&visible(&reports::to_text(&gait.show())))?)
 }
 
 /// Scores of a gait for data that was held out, or of gaits that are learned from all folds but one.
@@ -78,7 +77,7 @@ pub(super) fn score(command: &ScoreCommand, colors: Colors) -> Result<(), Stop> 
         Some((first, held_out)) if known(first) => {
             if held_out.is_empty() {
                 let hint = "write the files that were held out after the gait";
-                return Err(vec![complaint::argument("there is nothing to score the gait with", hint)]);
+                return Err(complaint::argument("there is nothing to score the gait with", hint).into());
             }
             let gait = open(first)?;
             let steps = recorded(&command.reading, held_out, colors)?;
@@ -88,13 +87,13 @@ pub(super) fn score(command: &ScoreCommand, colors: Colors) -> Result<(), Stop> 
     };
     if scores.iter().all(|(_, scores)| scores.pairs == 0) {
         let title = "the data that was held out has no two steps one after the other";
-        return Err(vec![Diagnostic::placeless(Code::E0722, title).hint("add takes")]);
+        return Err(Diagnostic::placeless(Code::E0722, title).hint("add takes").into());
     }
     let text = match command.format {
         TextFormat::Text => reports::scores_to_text(&scores),
         TextFormat::Json => reports::scores_to_json(&scores),
     };
-    write(None, &text)
+    Ok(print(&text)?)
 }
 
 fn recorded(reading: &Reading, data: &[String], colors: Colors) -> Result<Vec<RecordedStep>, Stop> {
@@ -109,7 +108,7 @@ fn cross_validated(command: &ScoreCommand, steps: &[RecordedStep]) -> Result<Vec
     if count < 2 {
         let hint =
             "add takes of other subjects, or give a learned gait first and data that was held out after it";
-        return Err(vec![complaint::argument("folds by subject need at least two subjects (got 1)", hint)]);
+        return Err(complaint::argument("folds by subject need at least two subjects (got 1)", hint).into());
     }
     let fold = model::folds(steps, count, true);
     let part = |held: usize, inside: bool| -> Vec<RecordedStep> {
@@ -124,5 +123,5 @@ fn cross_validated(command: &ScoreCommand, steps: &[RecordedStep]) -> Result<Vec
         let (gait, _) = model::fit(&part(held, false), &command.learning.options())?;
         Ok((format!("fold {}", held + 1), model::score(&gait, &part(held, true))))
     };
-    (0..count).map(one).collect::<Result<_, FitError>>().map_err(|error| unfitted(&error))
+    Ok((0..count).map(one).collect::<Result<_, FitError>>().map_err(|error| unfitted(&error))?)
 }

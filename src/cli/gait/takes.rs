@@ -3,7 +3,6 @@
 use super::arguments::Reading;
 use crate::cli::compare_walks::{SHOWN, span};
 use crate::cli::{complaint, inputs};
-use crate::compile::nearest::nearest;
 use crate::data::mocap::{Asf, Take, TakeRow, read_take_table, read_takes};
 use crate::data::tracks::LineError;
 use crate::gait::RecordedStep;
@@ -225,10 +224,7 @@ impl Takes {
         for name in reading.subjects.iter().chain(&reading.except) {
             if !known.contains(name) && !self.are_wrong() {
                 let all: Vec<&str> = known.iter().map(String::as_str).collect();
-                let hint = nearest(name, all.iter().copied()).map_or_else(
-                    || format!("the subjects are {}", all.join(", ")),
-                    |near| format!("did you mean `{near}`?"),
-                );
+                let hint = complaint::meant(name, &all, "the subjects are");
                 self.found.push(complaint::argument(format!("no take has the subject `{name}`"), hint));
             }
         }

@@ -2,6 +2,7 @@
 
 use crate::cli::values::{parse_moment, parse_velocity};
 use crate::data::tracks::{Format, Velocity};
+use crate::perception::Padding;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -35,8 +36,8 @@ pub(in crate::cli) struct InferCommand {
     #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
     pub(super) velocity: Velocity,
     /// How observations and traces of unequal number are assigned.
-    #[arg(long, value_enum, default_value_t = PaddingRule::Gated)]
-    pub(super) padding: PaddingRule,
+    #[arg(long, value_enum, default_value_t = Padding::Gated)]
+    pub(super) padding: Padding,
     /// How traces are projected to the time of an observation.
     #[arg(long, value_enum, default_value_t = MotionModel::Constant)]
     pub(super) motion: MotionModel,
@@ -73,15 +74,6 @@ pub(in crate::cli) struct InferCommand {
     /// Also write a self-contained HTML page that plays the traces and groups.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
-}
-
-/// `--padding`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum PaddingRule {
-    /// Pairs beyond the threshold are no pairs.
-    Gated,
-    /// As published: dummy entries at the largest distance.
-    Printed,
 }
 
 /// `--motion`

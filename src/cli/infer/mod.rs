@@ -9,16 +9,17 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::page;
-use super::terminal::{Colors, print};
+use super::terminal::Colors;
 use crate::base::random::TrialKey;
 use crate::data::tracks::{Batch, Format, LineError, Reading, Velocity, read_groups};
-use crate::perception::{Clustering, Inferring, Padding, Tracking, infer};
+use crate::perception::{Clustering, Inferring, Tracking, infer};
 use crate::report::ExitCode as Exit;
 use crate::report::infer::{InferredFile, to_csv, to_json, to_page, to_svg};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-use arguments::{InferFormat, PaddingRule};
+use arguments::InferFormat;
 use motion::ChosenMotion;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// Bad lines of a file that are shown.
@@ -26,38 +27,31 @@ const SHOWN: usize = 10;
 
 /// Runs the command.
 pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
-    match answer(arguments, colors) {
-        Ok(exit) => exit,
-        Err(errors) => {
-            complaint::tell_all(&errors, &[], colors);
-            Exit::Wrong
-        }
-    }
+    complaint::end(answer(arguments, colors), &[], colors)
 }
 
 fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnostic>> {
-    let one = |error: Diagnostic| vec![error];
     let positive = [arguments.projection, arguments.threshold, arguments.cohesion];
     let divides = arguments.discount.iter().chain(&positive);
     if divides.copied().any(|value| !(value > 0.0 && value.is_finite())) {
         let said = "`--projection`, `--threshold`, `--cohesion` and `--discount` must be positive";
-        return Err(one(complaint::argument(said, "write a positive number")));
+        return Err(complaint::argument(said, "write a positive number").into());
     }
     if let Some(fps) = arguments.fps.filter(|fps| !(*fps > 0.0 && *fps <= 1e6)) {
         let said = format!("`--fps` must be above 0 and at most 1e6 (got {fps})");
-        return Err(one(complaint::argument(said, "write a number of frames a second, such as 25")));
+        return Err(complaint::argument(said, "write a number of frames a second, such as 25").into());
     }
     let named = [Some(&arguments.tracks), arguments.annotated.as_ref(), arguments.scene.as_ref()];
     if named.into_iter().flatten().filter(|name| *name == "-").count() > 1 {
-        return Err(one(complaint::input("standard input can be read only once")));
+        return Err(complaint::input("standard input can be read only once").into());
     }
     let ChosenMotion { mut motion, kind, scene, sources, paths } = motion::chosen(arguments, colors)?;
     let files: Vec<PathBuf> = named.into_iter().flatten().map(PathBuf::from).chain(paths).collect();
-    output::guard_all(&[arguments.output.as_deref(), arguments.report.as_deref()], &files).map_err(one)?;
-    let bytes = inputs::read(&arguments.tracks).map_err(|reason| one(complaint::input(reason)))?;
+    output::guard_all(&[arguments.output.as_deref(), arguments.report.as_deref()], &files)?;
+    let bytes = inputs::read(&arguments.tracks).map_err(complaint::input)?;
     let Some(format) = arguments.input.or_else(|| Format::of(&bytes)) else {
         let said = format!("`{}` is in no known format", inputs::shown(&arguments.tracks));
-        return Err(one(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`")));
+        return Err(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`").into());
     };
     let reading = Reading { frames_per_second: arguments.fps, trial: arguments.trial };
     let mut batches = format
@@ -65,7 +59,7 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
         .map_err(|errors| bad_lines(&arguments.tracks, &errors))?;
     if batches.is_empty() {
         let said = format!("`{}` contains no observation", inputs::shown(&arguments.tracks));
-        return Err(one(Diagnostic::placeless(Code::E0702, said)));
+        return Err(Diagnostic::placeless(Code::E0702, said).into());
     }
     cut(&mut batches, arguments)?;
     // A file without velocities leaves only the seen ones.
@@ -75,15 +69,11 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
         Some(name) => Some(annotated(name, &batches)?),
         None => None,
     };
-    let padding = match arguments.padding {
-        PaddingRule::Gated => Padding::Gated,
-        PaddingRule::Printed => Padding::Printed,
-    };
     let options = Inferring {
         tracking: Tracking {
             threshold: arguments.threshold,
             longest: arguments.projection,
-            padding,
+            padding: arguments.padding,
             ..Tracking::default()
         },
         clustering: Clustering {
@@ -97,7 +87,7 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
         annotated,
     };
     let inference = infer(&batches, &options, motion.as_mut())
-        .map_err(|error| one(Diagnostic::placeless(Code::E0702, error.to_string())))?;
+        .map_err(|error| Diagnostic::placeless(Code::E0702, error.to_string()))?;
     let report = InferredFile {
         file: inputs::shown(&arguments.tracks),
         velocity,
@@ -112,13 +102,7 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
         InferFormat::Csv => to_csv(&inference),
         InferFormat::Svg => to_svg(&report),
     };
-    let written = match &arguments.output {
-        Some(path) => output::write(path, |out| out.write_all(text.as_bytes())).map_err(|error| {
-            one(complaint::output(format!("`{}` cannot be written: {error}", path.display())))
-        }),
-        None => print(&text).map_err(|reason| one(complaint::output(reason))),
-    };
-    written?;
+    output::put(arguments.output.as_deref(), &text)?;
     let Some(path) = &arguments.report else { return Ok(Exit::Success) };
     Ok(page::write(path, to_page(&report, scene, &sources), colors))
 }
@@ -133,33 +117,26 @@ fn cut(batches: &mut Vec<Batch>, arguments: &InferCommand) -> Result<(), Vec<Dia
         .retain(|batch| from.is_none_or(|from| batch.time >= from) && to.is_none_or(|to| batch.time <= to));
     if batches.is_empty() {
         let said = "there is no observation between `--from` and `--to`";
-        return Err(vec![complaint::argument(said, format!("the file lasts from {first} s to {last} s"))]);
+        return Err(complaint::argument(said, format!("the file lasts from {first} s to {last} s")).into());
     }
     Ok(())
 }
 
 /// Annotated groups; every id must be in the recording.
 fn annotated(name: &str, batches: &[Batch]) -> Result<Vec<Vec<u32>>, Vec<Diagnostic>> {
-    let text = text_of(name)?;
-    read_groups(&text).map_err(|errors| bad_lines(name, &errors)).and_then(|groups| {
-        let known: std::collections::BTreeSet<u32> =
-            batches.iter().flat_map(|batch| &batch.seen).filter_map(|one| one.id).collect();
-        if known.is_empty() || groups.iter().flatten().any(|id| known.contains(id)) {
-            return Ok(groups);
-        }
-        let said = format!("`{}` names nobody who is in the recording", inputs::shown(name));
-        Err(vec![
-            Diagnostic::placeless(Code::E0703, said)
-                .hint("write the ids of the recording, a group on each line"),
-        ])
-    })
-}
-
-fn text_of(name: &str) -> Result<String, Vec<Diagnostic>> {
-    let bytes = inputs::read(name).map_err(|reason| vec![complaint::input(reason)])?;
-    String::from_utf8(bytes).map_err(|_| {
-        vec![Diagnostic::placeless(Code::E0702, format!("`{}` is not UTF-8 text", inputs::shown(name)))]
-    })
+    let bytes = inputs::read(name).map_err(complaint::input)?;
+    let shown = inputs::shown(name);
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Diagnostic::placeless(Code::E0702, format!("`{shown}` is not UTF-8 text")))?;
+    let groups = read_groups(&text).map_err(|errors| bad_lines(name, &errors))?;
+    let known: BTreeSet<u32> =
+        batches.iter().flat_map(|batch| &batch.seen).filter_map(|one| one.id).collect();
+    if known.is_empty() || groups.iter().flatten().any(|id| known.contains(id)) {
+        return Ok(groups);
+    }
+    let said = format!("`{shown}` names nobody who is in the recording");
+    let hint = "write the ids of the recording, a group on each line";
+    Err(Diagnostic::placeless(Code::E0703, said).hint(hint).into())
 }
 
 fn bad_lines(name: &str, errors: &[LineError]) -> Vec<Diagnostic> {

@@ -5,7 +5,6 @@ use crate::cli::complaint;
 use crate::cli::inputs;
 use crate::cli::terminal::Colors;
 use crate::cli::values::Model;
-use crate::compile::nearest::nearest;
 use crate::compile::presets::PRESETS;
 use crate::compile::study::World;
 use crate::model::{Barrier, Scene};
@@ -47,7 +46,7 @@ pub(super) fn chosen(arguments: &InferCommand, colors: Colors) -> Result<ChosenM
         let given = [("--kind", &arguments.kind), ("--scene", &arguments.scene)];
         if let Some((option, _)) = given.iter().find(|(_, value)| value.is_some()) {
             let said = format!("`{option}` needs the social force");
-            return Err(vec![complaint::argument(said, "add `--motion social-force`")]);
+            return Err(complaint::argument(said, "add `--motion social-force`").into());
         }
     }
     match arguments.motion {
@@ -58,8 +57,7 @@ pub(super) fn chosen(arguments: &InferCommand, colors: Colors) -> Result<ChosenM
             if let Some(scenario) = &arguments.scene {
                 return in_scene(arguments, (scenario, kind), colors);
             }
-            let motion = of_kind(kind, None, Vec::new()).map_err(|error| vec![error])?;
-            Ok(without_scene(motion, Some(kind.to_owned())))
+            Ok(without_scene(of_kind(kind, None, Vec::new())?, Some(kind.to_owned())))
         }
     }
 }
@@ -75,11 +73,11 @@ fn in_scene(
         data: arguments.data.clone(),
         velocity: None,
     };
-    let inputs::Loaded { inputs, paths, .. } = inputs::load(&model, &[]);
-    complaint::diagnose(&inputs, colors);
-    let world = inputs.study.as_ref().and_then(|study| study.worlds.get(study.base)).ok_or_else(Vec::new)?;
+    let (study, inputs::Loaded { inputs, paths }) =
+        inputs::load_or_tell(&model, &[], colors).ok_or_else(Vec::new)?;
+    let world = study.worlds.get(study.base).ok_or_else(Vec::new)?;
     let scene = world.scenario.scene.clone();
-    let motion = of_kind(kind, Some(world), scene.barriers.clone()).map_err(|error| vec![error])?;
+    let motion = of_kind(kind, Some(world), scene.barriers.clone())?;
     Ok(ChosenMotion { motion, kind: Some(kind.to_owned()), scene, sources: inputs.sources, paths })
 }
 
@@ -101,14 +99,10 @@ fn of_kind(name: &str, scene: Option<&World>, barriers: Vec<Barrier>) -> Result<
         let said = format!("no force moves agents of the kind `{name}`");
         return Err(complaint::argument(said, format!("write one of {}", known.join(", "))));
     }
-    let hint = match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("write one of {}", known.join(", ")),
-    };
     let said = if scene.is_some() {
         format!("`{name}` is neither a preset nor a kind of the scene with all parameters")
     } else {
         format!("unknown preset `{name}`; kinds are declared in a `--scene`")
     };
-    Err(complaint::argument(said, hint))
+    Err(complaint::argument(said, complaint::meant(name, &known, "write one of")))
 }

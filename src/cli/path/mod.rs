@@ -9,11 +9,9 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::page::{self, Trials};
-use super::terminal::{Colors, print, warn};
+use super::terminal::{Colors, warn};
 use super::values::Model;
-use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
-use crate::compile::nearest::nearest;
 use crate::gait;
 use crate::kernel::{Program, Run, State};
 use crate::library;
@@ -24,81 +22,54 @@ use crate::report::paths::{self, PlannedPath};
 use crate::route::Ways;
 use crate::route::planner::{Speeds, Wish};
 use crate::route::profile::{Limits, region};
+use crate::syntax::diagnostic::Diagnostic;
 use arguments::{Figure, PathFormat};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Why the call is wrong, and what to write.
-type Refusal = (String, String);
-
 /// Runs the command.
 pub(super) fn run(arguments: &PathCommand, colors: Colors) -> Exit {
+    complaint::end(write(arguments, colors), &[], colors)
+}
+
+fn write(arguments: &PathCommand, colors: Colors) -> Result<Exit, Vec<Diagnostic>> {
     let given = [&arguments.scenario, &arguments.shape].into_iter().flatten().count()
         + usize::from(arguments.waypoints.is_some());
     if given != 1 {
-        let error = complaint::argument(
-            "`smc path` takes a scenario, `--shape` or `--waypoints`",
-            "write for example `smc path models/plaza.scn` or `smc path --shape 'L10 A45/7 L10'`",
-        );
-        complaint::tell(&error, &[], colors);
-        return Exit::Wrong;
+        let title = "`smc path` takes a scenario, `--shape` or `--waypoints`";
+        let hint = "write for example `smc path models/plaza.scn` or `smc path --shape 'L10 A45/7 L10'`";
+        return Err(complaint::argument(title, hint).into());
     }
     let text = match &arguments.scenario {
-        Some(scenario) => match of_model(arguments, scenario, colors) {
-            Ok(text) => text,
-            Err(exit) => return exit,
-        },
-        None => match shape::of_shape(arguments) {
-            Ok(text) => text,
-            Err((reason, hint)) => {
-                complaint::tell(&complaint::argument(reason, hint), &[], colors);
-                return Exit::Wrong;
-            }
-        },
+        Some(scenario) => of_model(arguments, scenario, colors)?,
+        None => shape::of_shape(arguments)?,
     };
-    let written = match &arguments.output {
-        Some(path) => output::write(path, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| format!("`{}` cannot be written: {error}", path.display())),
-        None => print(&text),
-    };
-    match written {
-        Ok(()) => Exit::Success,
-        Err(reason) => {
-            complaint::tell(&complaint::output(reason), &[], colors);
-            Exit::Wrong
-        }
-    }
+    output::put(arguments.output.as_deref(), &text)?;
+    Ok(Exit::Success)
 }
 
-/// The paths of the walkers of a scenario, from where they start in a trial.
-fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<String, Exit> {
+/// The paths of the walkers of a scenario, from where they start in a trial. What was told already is no error to write.
+fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<String, Vec<Diagnostic>> {
     let model = Model {
         scenario: scenario.to_owned(),
         set: arguments.set.clone(),
         data: arguments.data.clone(),
         velocity: None,
     };
-    let inputs::Loaded { inputs, paths, .. } = inputs::load(&model, &[]);
-    complaint::diagnose(&inputs, colors);
-    output::guard(arguments.report.as_deref(), &paths).map_err(|error| {
-        complaint::tell(&error, &[], colors);
-        Exit::Wrong
-    })?;
-    let Some(study) = &inputs.study else { return Err(Exit::Wrong) };
-    let Some(world) = study.worlds.get(study.base) else { return Err(Exit::Wrong) };
-    let refuse = |(reason, hint): Refusal| {
-        complaint::tell(&complaint::argument(reason, hint), &[], colors);
-        Exit::Wrong
-    };
+    let nothing = Vec::new;
+    let (study, inputs::Loaded { inputs, paths }) =
+        inputs::load_or_tell(&model, &[], colors).ok_or_else(nothing)?;
+    output::guard(arguments.report.as_deref(), &paths)?;
+    let world = study.worlds.get(study.base).ok_or_else(nothing)?;
     let ways = Ways::default();
     let mut scenario = Arc::clone(&world.scenario);
     library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
-    let chosen = chosen(&scenario, arguments.agent.as_deref()).map_err(refuse)?;
+    let chosen = chosen(&scenario, arguments.agent.as_deref())?;
     let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
     let key = TrialKey { seed: arguments.seed, index: arguments.trial, branch: 0 };
     let (run, _) = Run::of(&program, key.into()).map_err(|fault| {
         let why = crate::engine::no_start(&scenario, fault);
-        refuse((format!("trial {} cannot start: {why}", key.index), "choose another `--trial`".to_owned()))
+        complaint::argument(format!("trial {} cannot start: {why}", key.index), "choose another `--trial`")
     })?;
     if let Some(path) = &arguments.report {
         let mut list = followed(&scenario, &chosen).into_iter().map(|option| (key.index, option));
@@ -111,9 +82,8 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
             last: scenario.horizon,
             replay: page::line(&model, None).simulate(&[], key.seed, key.index),
         };
-        let exit = trials.write(path, colors);
-        if exit != Exit::Success {
-            return Err(exit);
+        if trials.write(path, colors) != Exit::Success {
+            return Err(nothing());
         }
     }
     let walkers = ways.walkers(&scenario, arguments.seed);
@@ -148,7 +118,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         (PathFormat::Text, _) => Ok(told(&found)),
         (PathFormat::Svg, Figure::Map) => Ok(paths::map(&scenario, &found, &arguments.at)),
         (PathFormat::Svg, figure) => {
-            let Some(first) = found.first() else { return Err(Exit::Wrong) };
+            let first = found.first().ok_or_else(nothing)?;
             let course = &first.course;
             if figure == Figure::Speed {
                 return Ok(paths::speed(std::slice::from_ref(course), title));
@@ -156,7 +126,9 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
             let limits = run_limits(run.state(), &scenario, &first.agent);
             let region = limits
                 .and_then(|limits| region(&course.stretches(), limits, course.motion(0.0).speed, 0.0).ok());
-            region.map(|region| paths::phase(&region, std::slice::from_ref(course), title)).ok_or(Exit::Wrong)
+            region
+                .map(|region| paths::phase(&region, std::slice::from_ref(course), title))
+                .ok_or_else(nothing)
         }
     }
 }
@@ -188,7 +160,7 @@ fn told(paths: &[PlannedPath]) -> String {
 fn run_limits(state: &State, scenario: &Scenario, name: &str) -> Option<Limits> {
     let id = scenario.agents.iter().position(|agent| agent.name == name)?;
     let slot = state.slot(id, 0);
-    let of = |parameter| state.bodies[parameter][slot.block].0[slot.lane];
+    let of = |parameter| slot.of(&state.bodies[parameter]);
     Some(Speeds::new(of, 1.0, SpeedRule::Optimal).limits)
 }
 
@@ -203,16 +175,12 @@ fn wish<'a>(
     let agent = &scenario.agents[id.0 as usize];
     let Route::Legs { legs, .. } = &agent.route else { return None };
     let slot = state.slot(id.0 as usize, 0);
-    let at = |field: &[crate::base::lanes::Lanes]| field[slot.block].0[slot.lane];
-    let of = |parameter: Parameter| at(&state.bodies[parameter]);
+    let of = |parameter: Parameter| slot.of(&state.bodies[parameter]);
     Some(Wish {
         scenario,
         agent: id,
         address: (key, agent.entity, 0),
-        motion: (
-            Vec2::new(at(&state.motion.x), at(&state.motion.y)),
-            Vec2::new(at(&state.motion.vx), at(&state.motion.vy)),
-        ),
+        motion: (state.position(slot), state.velocity(slot)),
         legs,
         speeds: Speeds::new(of, of(Parameter::Speed), agent.body.planner.as_ref()?.profile),
         path,
@@ -220,24 +188,18 @@ fn wish<'a>(
 }
 
 /// The agent of a name, or all that plan.
-fn chosen(scenario: &Scenario, name: Option<&str>) -> Result<Vec<AgentId>, Refusal> {
+fn chosen(scenario: &Scenario, name: Option<&str>) -> Result<Vec<AgentId>, Diagnostic> {
     let plans = |id: &AgentId| scenario.agents[id.0 as usize].body.planner.is_some();
     let all: Vec<AgentId> = (0..scenario.agents.len() as u32).map(AgentId).filter(plans).collect();
     let Some(name) = name else {
         let hint = "declare a kind that plans: `kind planner: planned { limit speed = 1.5 m/s }`";
-        return if all.is_empty() {
-            Err(("nobody plans in this scenario".to_owned(), hint.to_owned()))
-        } else {
-            Ok(all)
-        };
+        let error = || complaint::argument("nobody plans in this scenario", hint);
+        return if all.is_empty() { Err(error()) } else { Ok(all) };
     };
     let names: Vec<&str> = all.iter().map(|id| scenario.agents[id.0 as usize].name.as_str()).collect();
     if let Some(at) = names.iter().position(|known| *known == name.trim()) {
         return Ok(vec![all[at]]);
     }
-    let hint = nearest(name, names.iter().copied()).map_or_else(
-        || format!("those who plan are {}", names.join(", ")),
-        |near| format!("did you mean `{near}`?"),
-    );
-    Err((format!("`{name}` does not plan, or is not there"), hint))
+    let hint = complaint::meant(name, &names, "those who plan are");
+    Err(complaint::argument(format!("`{name}` does not plan, or is not there"), hint))
 }

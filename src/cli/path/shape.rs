@@ -3,6 +3,7 @@
 use super::arguments::{Figure, PathCommand, PathFormat, SpeedLaw};
 use crate::base::geometry::Vec2;
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::cli::complaint::argument;
 use crate::cli::inputs;
 use crate::model::Sight;
 use crate::report::paths::{self, PlannedPath};
@@ -11,6 +12,7 @@ use crate::route::planner::{Course, stretches};
 use crate::route::profile::{
     Infeasible, Law, Limits, Printed, Region, Stretch, Varied, Variety, optimal, printed, region, varied,
 };
+use crate::syntax::diagnostic::Diagnostic;
 use std::fmt::Write as _;
 
 /// Least share of the largest speed squared that profiles draw.
@@ -18,23 +20,18 @@ const FLOOR: f64 = 0.1;
 /// Draws of one profile.
 const DRAWS: u32 = 1 << 10;
 
-/// Why the call is wrong, and what to write.
-type Refusal = (String, String);
-
 /// No profile keeps the limits.
-fn wrong(error: Infeasible) -> Refusal {
-    (format!("this path has no profile: {error}"), "change a limit or an end speed".to_owned())
+fn wrong(error: Infeasible) -> Diagnostic {
+    argument(format!("this path has no profile: {error}"), "change a limit or an end speed")
 }
 
 /// A path by its shape or its way points.
-pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Refusal> {
+pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
     let (stretches, path) = match (&arguments.shape, &arguments.waypoints) {
         (Some(text), _) => {
             let shape: PathShape = text.parse().map_err(|error: ShapeError| {
-                (
-                    format!("`--shape` cannot be read: {error}"),
-                    "write for example `--shape 'L10 A45/7 L10'`".to_owned(),
-                )
+                let title = format!("`--shape` cannot be read: {error}");
+                argument(title, "write for example `--shape 'L10 A45/7 L10'`")
             })?;
             (shape.stretches(), shape.path())
         }
@@ -70,7 +67,7 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Refusal> {
         }
         (PathFormat::Svg, Figure::Speed) => Ok(paths::speed(&courses, &title)),
         (PathFormat::Svg, Figure::Map) => {
-            Err(("a shape has no map".to_owned(), "write `--figure phase` or `--figure speed`".to_owned()))
+            Err(argument("a shape has no map", "write `--figure phase` or `--figure speed`"))
         }
         (format, _) => {
             let alone = Course { path, optimum, varied: None };
@@ -121,7 +118,7 @@ fn tell_shape(
     stretches: &[Stretch],
     limits: Limits,
     courses: &[Course],
-) -> Result<String, Refusal> {
+) -> Result<String, Diagnostic> {
     let optimum = optimal(stretches, limits, arguments.start_speed, arguments.end_speed).map_err(wrong)?;
     let speeds: Vec<String> = optimum.node_speeds().map(|speed| format!("{speed:.6}")).collect();
     let mut out = format!("optimal_s {:.17}\n", optimum.duration());
@@ -159,15 +156,15 @@ fn tell_shape(
 }
 
 /// The way points of a CSV file with the columns `x` and `y`, m.
-fn way_points(file: &std::path::Path) -> Result<Vec<Vec2>, Refusal> {
-    let hint = || "write a CSV file with the columns `x` and `y` in metres".to_owned();
+fn way_points(file: &std::path::Path) -> Result<Vec<Vec2>, Diagnostic> {
+    let wrong = |title| argument(title, "write a CSV file with the columns `x` and `y` in metres");
     let name = file.display().to_string();
-    let bytes = inputs::read(&name).map_err(|reason| (reason, hint()))?;
+    let bytes = inputs::read(&name).map_err(wrong)?;
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let header = reader.headers().cloned().unwrap_or_default();
     let column = |of: &str| header.iter().position(|known| known.trim() == of);
     let (Some(x), Some(y)) = (column("x"), column("y")) else {
-        return Err((format!("`{name}` has no columns `x` and `y`"), hint()));
+        return Err(wrong(format!("`{name}` has no columns `x` and `y`")));
     };
     let mut points = Vec::new();
     for (k, record) in reader.records().enumerate() {
@@ -176,7 +173,7 @@ fn way_points(file: &std::path::Path) -> Result<Vec<Vec2>, Refusal> {
         };
         let point = record.ok().and_then(|record| Some(Vec2::new(number(&record, x)?, number(&record, y)?)));
         let Some(point) = point else {
-            return Err((format!("`{name}`: line {} has no numbers in `x` and `y`", k + 2), hint()));
+            return Err(wrong(format!("`{name}`: line {} has no numbers in `x` and `y`", k + 2)));
         };
         points.push(point);
     }

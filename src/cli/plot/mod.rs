@@ -2,9 +2,7 @@
 
 mod arguments;
 
-use super::terminal::{Colors, print};
 use super::{complaint, inputs, output};
-use crate::report::ExitCode as Exit;
 use crate::report::figure::draw;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -13,17 +11,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Runs the command.
-pub(super) fn run(command: &PlotCommand, colors: Colors) -> Exit {
-    match plot(command) {
-        Ok(()) => Exit::Success,
-        Err(error) => {
-            complaint::tell(&error, &[], colors);
-            Exit::Wrong
-        }
-    }
-}
-
-fn plot(command: &PlotCommand) -> Result<(), Diagnostic> {
+pub(super) fn run(command: &PlotCommand) -> Result<(), Diagnostic> {
     let name = inputs::shown(&command.results);
     let read = Path::new(if command.results == "-" { inputs::STDIN } else { &command.results }).to_path_buf();
     output::guard(command.output.as_deref(), &[read])?;
@@ -35,11 +23,7 @@ fn plot(command: &PlotCommand) -> Result<(), Diagnostic> {
         let hint = "make the file with `smc check … --format json=results.json`";
         wrong(format!("it is no JSON ({error})"), hint.to_owned())
     })?;
-    let svg = draw(command.figure.of(), &file, command.only.as_deref())
+    let svg = draw(command.figure, &file, command.only.as_deref())
         .map_err(|flaw| wrong(flaw.message, flaw.hint))?;
-    match &command.output {
-        Some(path) => output::write(path, |out| out.write_all(svg.as_bytes()))
-            .map_err(|error| complaint::unwritten(path, &error)),
-        None => print(&svg).map_err(complaint::output),
-    }
+    output::put(command.output.as_deref(), &svg)
 }

@@ -61,8 +61,8 @@ pub(in crate::cli) struct MonitorCommand {
     #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
     pub(super) velocity: Velocity,
     /// What is taken of others after the end of their tracks.
-    #[arg(long, value_enum, default_value_t = BeyondRule::Unresolved)]
-    pub(super) beyond: BeyondRule,
+    #[arg(long, value_enum, default_value_t = Beyond::Unresolved)]
+    pub(super) beyond: Beyond,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = MonitorFormat::Text)]
     pub(super) format: MonitorFormat,
@@ -93,8 +93,8 @@ pub(in crate::cli) struct EvaluateCommand {
     #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
     pub(super) velocity: Velocity,
     /// What is taken of others after the end of their tracks.
-    #[arg(long, value_enum, default_value_t = BeyondRule::Onward)]
-    pub(super) beyond: BeyondRule,
+    #[arg(long, value_enum, default_value_t = Beyond::Onward)]
+    pub(super) beyond: Beyond,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = EvaluateFormat::Text)]
     pub(super) format: EvaluateFormat,
@@ -202,24 +202,6 @@ fn parse_population(text: &str) -> Result<usize, String> {
         Ok(count)
     } else {
         Err("a generation has 4 to 10000 candidates".to_owned())
-    }
-}
-
-/// `--beyond`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum BeyondRule {
-    /// What needs them is unresolved.
-    Unresolved,
-    /// They go on with their last velocity.
-    Onward,
-}
-
-impl From<BeyondRule> for Beyond {
-    fn from(rule: BeyondRule) -> Self {
-        match rule {
-            BeyondRule::Unresolved => Self::Unresolved,
-            BeyondRule::Onward => Self::Onward,
-        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::arguments::{EvaluateCommand, EvaluateFormat};
 use super::{Call, Exit};
-use crate::cli::complaint;
 use crate::cli::terminal::Colors;
+use crate::cli::{complaint, output};
 use crate::gait;
 use crate::model::Scenario;
 use crate::replay::{
@@ -31,7 +31,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
     let instants = eligible(replay, call.instants.clone(), *every, arguments.speed, PREDICTED);
     if instants.is_empty() {
         let said = format!("nobody moves and is seen for the next {PREDICTED} s at any instant");
-        return Err(vec![complaint::argument(said, "choose other times, or a smaller `--speed`")]);
+        return Err(complaint::argument(said, "choose other times, or a smaller `--speed`").into());
     }
     let mut kinds = arguments.kinds.clone();
     if kinds.is_empty() {
@@ -40,11 +40,8 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         kinds.extend(arguments.realism.then(|| LANGEVIN.to_owned()));
     }
     kinds.dedup();
-    let options = Evaluating {
-        trials: arguments.trials,
-        seed: arguments.replayed.seed,
-        beyond: arguments.beyond.into(),
-    };
+    let options =
+        Evaluating { trials: arguments.trials, seed: arguments.replayed.seed, beyond: arguments.beyond };
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
     let (mut found, mut realisms) = (Vec::new(), Vec::new());
@@ -97,13 +94,9 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         EvaluateFormat::Text => Ok(to_text(&evaluated)),
         EvaluateFormat::Json => Ok(to_json(&evaluated)),
         EvaluateFormat::Svg => {
-            to_svg(&evaluated).map_err(|flaw| vec![complaint::argument(flaw.message, flaw.hint)])
+            Ok(to_svg(&evaluated).map_err(|flaw| complaint::argument(flaw.message, flaw.hint))?)
         }
-        EvaluateFormat::Csv => {
-            let mut out = Vec::new();
-            write_csv(&mut out, &evaluated).map_err(|error| vec![complaint::output(error.to_string())])?;
-            Ok(String::from_utf8_lossy(&out).into_owned())
-        }
+        EvaluateFormat::Csv => Ok(output::table(|out| write_csv(out, &evaluated))?),
     }
 }
 
@@ -150,15 +143,20 @@ impl Persons {
         Quality::of(&all, pair.as_ref().map(|[own, other]| [own, other]), bootstrap)
     }
 
+    /// The sum over all persons of something, over the sum of its weights.
+    fn ratio(&self, parts: impl Iterator<Item = (u32, f64, f64)>, bootstrap: &Bootstrap) -> Option<Estimate> {
+        let mut sums = vec![[0.0, 0.0]; self.numbers.len()];
+        for (person, one, weight) in parts {
+            let sum = &mut sums[self.number(person) as usize];
+            *sum = [sum[0] + one, sum[1] + weight];
+        }
+        bootstrap.estimate(ratio(&sums))
+    }
+
     fn displacement(&self, found: &Predicted, bootstrap: &Bootstrap) -> Displacement {
         type One = crate::replay::Displacement;
-        let mean = |of: fn(&One) -> f64| -> Option<Estimate> {
-            let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
-            for one in &found.displacements {
-                let part = &mut parts[self.number(one.person) as usize];
-                (part[0], part[1]) = (part[0] + of(one), part[1] + 1.0);
-            }
-            bootstrap.estimate(ratio(&parts))
+        let mean = |of: fn(&One) -> f64| {
+            self.ratio(found.displacements.iter().map(|one| (one.person, of(one), 1.0)), bootstrap)
         };
         Displacement {
             mean_ade: mean(|one| one.average),
@@ -177,12 +175,8 @@ impl Persons {
         bootstrap: &Bootstrap,
     ) -> Vec<(&'static str, Option<Estimate>)> {
         let of = |(k, name): (usize, &&'static str)| {
-            let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
-            for (person, sums, steps) in found {
-                let part = &mut parts[self.number(*person) as usize];
-                (part[0], part[1]) = (part[0] + sums[k], part[1] + *steps as f64);
-            }
-            (*name, bootstrap.estimate(ratio(&parts)))
+            let parts = found.iter().map(|(person, sums, steps)| (*person, sums[k], *steps as f64));
+            (*name, self.ratio(parts, bootstrap))
         };
         if found.is_empty() { Vec::new() } else { FEATURES.iter().enumerate().map(of).collect() }
     }
@@ -190,13 +184,8 @@ impl Persons {
     fn coverage(&self, found: &Predicted, bootstrap: &Bootstrap) -> Vec<Coverage> {
         let after = |(k, seconds): (usize, &f64)| {
             let mean = |of: fn(&Fit) -> f64| {
-                let mut parts = vec![[0.0, 0.0]; self.numbers.len()];
-                for (person, fits) in &found.fits {
-                    let Some(fit) = &fits[k] else { continue };
-                    let part = &mut parts[self.number(*person) as usize];
-                    (part[0], part[1]) = (part[0] + of(fit), part[1] + 1.0);
-                }
-                bootstrap.estimate(ratio(&parts))
+                let known = found.fits.iter().filter_map(|(person, fits)| Some((*person, fits[k].as_ref()?)));
+                self.ratio(known.map(|(person, fit)| (person, of(fit), 1.0)), bootstrap)
             };
             let (share, log_density) = (mean(|fit| f64::from(fit.inside)), mean(|fit| fit.log_density));
             Coverage { seconds: *seconds, share, log_density }

@@ -26,7 +26,7 @@ pub(in crate::cli) fn run(arguments: &FitCommand, colors: Colors) -> Exit {
 
 fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
     let Call { replay, threads, every, .. } = call;
-    let fitted = parameters(&arguments.parameters).map_err(|error| vec![error])?;
+    let fitted = parameters(&arguments.parameters)?;
     let kind = arguments.kind.clone().or_else(|| user_kind(replay)).unwrap_or_default();
     let base = replay.base_of(&kind);
     let own = replay.with_kind(&kind)?;
@@ -35,7 +35,7 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
     let instants = eligible(&own, call.instants.clone(), own.recording.step(), arguments.speed, PREDICTED);
     let cases = Cases::new(&own, &instants, counting, threads)?;
     if cases.persons.len() < FEWEST {
-        return Err(vec![few(&own, cases.persons.len())]);
+        return Err(few(&own, cases.persons.len()).into());
     }
     let options = Searching {
         generations: arguments.generations,
@@ -56,12 +56,7 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
     let found = search(&cases, &fitted, options, (threads, &drivers), &mut log).map_err(|k| {
         let said = format!("`--parameters {}`: nothing in this model uses `{}`", names[k], names[k]);
         let hint = "another value changes no prediction: remove it, or write what needs it into the model";
-        let place = own.place_of_tracks();
-        let error = place.map_or_else(
-            || Diagnostic::placeless(Code::E0713, &said),
-            |place| Diagnostic::error(Code::E0713, place, &said),
-        );
-        vec![error.hint(hint)]
+        of_tracks(&own, said).hint(hint)
     })?;
     let test = match &arguments.test {
         Some(model) => {
@@ -97,11 +92,11 @@ fn parameters(names: &[String]) -> Result<Vec<Fitted>, Diagnostic> {
     let mut all: Vec<Fitted> = Vec::new();
     for name in names {
         let Some(one) = known.iter().find(|one| one.name() == name) else {
-            let error = complaint::argument(
+            let names: Vec<&str> = known.iter().map(|one| one.name()).collect();
+            return Err(complaint::argument(
                 format!("`--parameters {name}`: there is no parameter `{name}` that can be fitted"),
-                format!("choose from {}", known.iter().map(|one| one.name()).collect::<Vec<_>>().join(", ")),
-            );
-            return Err(error);
+                format!("choose from {}", names.join(", ")),
+            ));
         };
         if !all.contains(one) {
             all.push(*one);
@@ -112,11 +107,16 @@ fn parameters(names: &[String]) -> Result<Vec<Fitted>, Diagnostic> {
 
 fn few(replay: &Replay, count: usize) -> Diagnostic {
     let said = format!("a fit needs {FEWEST} tracks of people who move for {PREDICTED} s (got {count})");
-    let error = match replay.place_of_tracks() {
+    let hint = "choose a longer recording, other times, a shorter `--every` or a smaller `--speed`";
+    of_tracks(replay, said).hint(hint)
+}
+
+/// An error of the tracks.
+fn of_tracks(replay: &Replay, said: String) -> Diagnostic {
+    match replay.place_of_tracks() {
         Some(place) => Diagnostic::error(Code::E0713, place, said),
         None => Diagnostic::placeless(Code::E0713, said),
-    };
-    error.hint("choose a longer recording, other times, a shorter `--every` or a smaller `--speed`")
+    }
 }
 
 /// The fitted parameters in another model with its recording.
@@ -132,7 +132,7 @@ fn tested(
     let errors = parsed.inputs.diagnostics.iter().filter(|one| one.severity == Severity::Error);
     if errors.count() > 0 {
         let said = format!("`--test {scenario}` has errors");
-        return Err(vec![complaint::argument(said, format!("`smc show {scenario}` lists them"))]);
+        return Err(complaint::argument(said, format!("`smc show {scenario}` lists them")).into());
     }
     let input = parsed.input();
     let tracks = first_tracks(input.scenario).unwrap_or_default();

@@ -13,16 +13,18 @@ pub(super) use monitor::run as monitor;
 use super::complaint;
 use super::inputs;
 use super::output;
-use super::terminal::{Colors, print};
+use super::terminal::Colors;
+use super::values::threads;
 use crate::base::visible::visible;
 use crate::data::tracks::Velocity;
-use crate::engine::{Fault, Threads};
-use crate::library;
+use crate::engine::Threads;
+use crate::library::Parsed;
 use crate::replay::{Instant, Replay, Whose};
 use crate::report::ExitCode as Exit;
-use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Source;
 use arguments::Replayed;
+use std::path::PathBuf;
 
 /// What a call is about.
 struct Call {
@@ -40,47 +42,37 @@ fn run(
     colors: Colors,
     work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
 ) -> Exit {
-    let refuse = |errors: &[Diagnostic], sources: &[Source]| {
-        complaint::tell_all(errors, sources, colors);
-        Exit::Wrong
-    };
-    let (parsed, paths) = inputs::parse(&replayed.model, &replayed.properties);
-    complaint::diagnose(&parsed.inputs, colors);
-    if parsed.inputs.diagnostics.iter().any(|one| one.severity == Severity::Error) {
+    let Some((parsed, paths)) = inputs::parse_or_tell(&replayed.model, &replayed.properties, colors) else {
         return Exit::Wrong;
-    }
-    let sources = &parsed.inputs.sources;
-    if let Err(error) = output::guard(replayed.output.as_deref(), &paths) {
-        return refuse(&[error], sources);
-    }
-    let threads = match Threads::new(replayed.threads) {
-        Ok(threads) => threads,
-        Err(error) => return refuse(&[library::refusal(&Fault::Threads(error.to_string()))], sources),
     };
-    let replay = match Replay::new(&parsed.input(), &replayed.replay, velocity, whose) {
-        Ok(replay) => replay,
-        Err(errors) => return refuse(&errors, sources),
-    };
+    let mut sources = parsed.inputs.sources.clone();
+    let done = replay(&parsed, &paths, replayed, (velocity, whose), &mut sources, work);
+    complaint::end(done.map(|()| Exit::Success), &sources, colors)
+}
+
+/// Does the work and writes what it gives; `sources` are the texts of errors.
+fn replay(
+    parsed: &Parsed,
+    paths: &[PathBuf],
+    replayed: &Replayed,
+    (velocity, whose): (Velocity, Whose),
+    sources: &mut Vec<Source>,
+    work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
+) -> Result<(), Vec<Diagnostic>> {
+    output::guard(replayed.output.as_deref(), paths)?;
+    let threads = threads(replayed.threads)?;
+    let replay = Replay::new(&parsed.input(), &replayed.replay, velocity, whose)?;
     let every = replayed.every.map_or(replay.recording.step(), |every| every.as_secs_f64());
     let instants = replay.instants(every, replayed.between());
     if instants.is_empty() {
         let said =
             format!("the recording `{}` has no instant of this user between these times", replay.tracks);
         let hint = format!("it lasts until {} s", replay.recording.duration());
-        return refuse(&[complaint::argument(said, hint)], sources);
+        return Err(complaint::argument(said, hint).into());
     }
     let call = Call { replay, threads, instants, every };
-    let text = match work(&call) {
-        Ok(text) => text,
-        Err(errors) => return refuse(&errors, &call.replay.sources),
-    };
-    let written = match &replayed.output {
-        Some(path) => output::write(path, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| format!("`{}` cannot be written: {error}", path.display())),
-        None => print(&visible(&text)),
-    };
-    match written {
-        Ok(()) => Exit::Success,
-        Err(reason) => refuse(&[complaint::output(reason)], sources),
-    }
+    sources.clone_from(&call.replay.sources);
+    let text = work(&call)?;
+    let shown = if replayed.output.is_none() { visible(&text) } else { text.as_str().into() };
+    Ok(output::put(replayed.output.as_deref(), &shown)?)
 }

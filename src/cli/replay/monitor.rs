@@ -2,9 +2,9 @@
 
 use super::arguments::{MonitorCommand, MonitorFormat};
 use super::{Call, Exit};
-use crate::cli::complaint;
+use crate::cli::output;
 use crate::cli::terminal::Colors;
-use crate::replay::{Beyond, Whose, monitor};
+use crate::replay::{Whose, monitor};
 use crate::report::monitor::{
     InstantVerdict, Monitored, MonitoredInstant, MonitoredProperty, to_json, to_text, write_csv,
 };
@@ -19,7 +19,7 @@ pub(in crate::cli) fn run(arguments: &MonitorCommand, colors: Colors) -> Exit {
 
 fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
     let Call { replay, threads, instants, every } = call;
-    let beyond = Beyond::from(arguments.beyond);
+    let beyond = arguments.beyond;
     let judged = monitor(replay, instants, beyond, threads)?;
     let verdict = |truth: &Option<bool>| match truth {
         Some(true) => InstantVerdict::True,
@@ -50,10 +50,6 @@ fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnosti
     match arguments.format {
         MonitorFormat::Text => Ok(to_text(&monitored)),
         MonitorFormat::Json => Ok(to_json(&monitored)),
-        MonitorFormat::Csv => {
-            let mut out = Vec::new();
-            write_csv(&mut out, &monitored).map_err(|error| vec![complaint::output(error.to_string())])?;
-            Ok(String::from_utf8_lossy(&out).into_owned())
-        }
+        MonitorFormat::Csv => Ok(output::table(|out| write_csv(out, &monitored))?),
     }
 }

@@ -1,6 +1,5 @@
 //! Where the tables of a call go, and in which format.
 
-use super::format::left_out;
 use crate::cli::{complaint, output};
 use crate::data::table::{CSV, FORMATS, TraceFormat};
 use crate::model::Scenario;
@@ -61,15 +60,7 @@ impl Destination {
         page: Option<&Path>,
         inputs: &[PathBuf],
     ) -> Result<Self, Diagnostic> {
-        if let (Some(file), Some(page)) = (file, page)
-            && (file == page || output::is_same(file, page))
-        {
-            let title = format!("two results are to be written to `{}`", file.display());
-            return Err(complaint::argument(title, "write each of them to a file of its own"));
-        }
-        for written in [file, page] {
-            output::guard(written, inputs)?;
-        }
+        output::guard_all(&[file, page], inputs)?;
         let format = match (format, file.and_then(Path::extension)) {
             (Some(format), _) => format,
             (None, None) => &CSV,
@@ -112,6 +103,12 @@ impl Destination {
         }
         Ok(Box::new(std::iter::once(Ok((self.file.clone(), chosen)))))
     }
+}
+
+/// What to do where a format is not in this build.
+pub(in crate::cli) fn left_out(format: &TraceFormat) -> String {
+    let name = format.name;
+    format!("this program was built without the feature `{name}`: build it with `--features {name}`")
 }
 
 fn of_ending(ending: &str) -> Result<&'static TraceFormat, Diagnostic> {

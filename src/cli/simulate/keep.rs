@@ -2,12 +2,13 @@
 
 use super::choice::Keep;
 use crate::cli::complaint;
+use crate::cli::values::threads;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::compile::study::{Ask, MeasureKind, Query, Target};
 use crate::engine::cell::{Item, Reading};
 use crate::engine::executor::{Executor, Job};
-use crate::engine::{Budget, Fault, PreparedWorld, Threads};
+use crate::engine::{Budget, Fault, PreparedWorld};
 use crate::library;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -90,8 +91,7 @@ impl Keep {
         seed: u64,
         mut items: impl Iterator<Item = Item>,
     ) -> Result<(Vec<u64>, u64), Diagnostic> {
-        let wrong = |fault: Fault| library::refusal(&fault);
-        let threads = Threads::new(None).map_err(|error| wrong(Fault::Threads(error.to_string())))?;
+        let threads = threads(None)?;
         let (job, budget) = (Job::new(prepared, vec![column], seed), Budget::new(u64::MAX, None));
         let (mut kept, mut unresolved) = (Vec::new(), 0);
         loop {
@@ -99,7 +99,8 @@ impl Keep {
             if round.is_empty() {
                 return Ok((kept, unresolved));
             }
-            let cells = threads.run(&job, &round, &budget).map_err(|_| wrong(Fault::Unsuitable))?;
+            let cells = threads.run(&job, &round, &budget);
+            let cells = cells.map_err(|_| library::refusal(&Fault::Unsuitable))?;
             for (item, cells) in round.iter().zip(cells.rows()) {
                 match cells.and_then(|cells| cells.first()).map(|cell| cell.reading) {
                     Some(Reading::Truth(truth)) if truth == self.truth => kept.push(item.index),

@@ -1,8 +1,7 @@
 //! `smc simulate`: traces of trials as tables.
 
 pub(super) mod choice;
-mod destination;
-pub(super) mod format;
+pub(super) mod destination;
 mod keep;
 mod option;
 mod rows;
@@ -41,17 +40,15 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         complaint::tell(&error, &[], colors);
         return Exit::Wrong;
     }
-    let inputs::Loaded { mut inputs, paths, .. } = inputs::load(&arguments.model, &arguments.properties);
-    complaint::diagnose(&inputs, colors);
-    let Some(study) = inputs.study.take() else { return Exit::Wrong };
+    let Some((study, inputs::Loaded { inputs, paths })) =
+        inputs::load_or_tell(&arguments.model, &arguments.properties, colors)
+    else {
+        return Exit::Wrong;
+    };
     let destination =
         Destination::new(arguments.format, arguments.output.as_deref(), arguments.report.as_deref(), &paths);
-    destination.and_then(|to| simulate(arguments, study, &to, &inputs.sources, colors)).unwrap_or_else(
-        |error| {
-            complaint::tell(&error, &inputs.sources, colors);
-            Exit::Wrong
-        },
-    )
+    let done = destination.and_then(|to| simulate(arguments, study, &to, &inputs.sources, colors));
+    complaint::end(done, &inputs.sources, colors)
 }
 
 /// Whether the numbers of a call are possible.

@@ -1,14 +1,12 @@
 //! Trials as rows of a table: one for each agent in each state, or for each state where there are no agents.
 
-use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
 use crate::cli::end::early_end;
 use crate::data::table::{Column, Kind, Table, Value};
 use crate::engine::no_start;
 use crate::kernel::{Address, End, Program, Run, Slot, State};
-use crate::model::{AgentId, Domain, Obstacle, Parameter, Scenario};
+use crate::model::{AgentId, Domain, Parameter, Scenario};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -37,18 +35,14 @@ pub(super) fn table(scenario: &Scenario, seed: u64, every: u64) -> Table {
         let with_states = behaviours.filter(|behaviour| !behaviour.states.is_empty());
         columns.extend(with_states.map(|behaviour| Column::new(&behaviour.name, Kind::Word)));
     }
-    let barriers = || scenario.scene.barriers.iter().map(|barrier| &barrier.obstacle);
-    let walls = barriers().filter_map(|one| if let Obstacle::Wall(parts) = one { Some(parts) } else { None });
-    let solids =
-        barriers().filter_map(|one| if let Obstacle::Solid(shape) = one { Some(shape) } else { None });
     Table {
         columns,
         scenario: scenario.title.clone(),
         seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         interval: if scenario.clock.is_jumps() { 0.0 } else { scenario.clock.step_seconds() * every as f64 },
-        walls: walls.flatten().copied().collect(),
-        solids: solids.cloned().collect(),
+        walls: scenario.scene.walls().copied().collect(),
+        solids: scenario.scene.solids().cloned().collect(),
     }
 }
 
@@ -180,12 +174,9 @@ impl<'p> Rows<'p> {
             None => scenario.agents[agent].name.as_str().into(),
         }));
         if let Some(slot) = slot {
-            let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
-            let motion = &state.motion;
-            let velocity = Vec2::new(at(&motion.vx), at(&motion.vy));
-            let numbers = [at(&motion.x), at(&motion.y), velocity.x, velocity.y, velocity.norm()];
-            row.extend(numbers.map(Value::Number));
-            row.extend([Value::Truth(true), Value::Number(at(&state.bodies[Parameter::Radius]))]);
+            let (at, velocity) = (state.position(slot), state.velocity(slot));
+            row.extend([at.x, at.y, velocity.x, velocity.y, velocity.norm()].map(Value::Number));
+            row.extend([Value::Truth(true), Value::Number(slot.of(&state.bodies[Parameter::Radius]))]);
         } else {
             row.extend([const { Value::Missing }; 5]);
             row.extend([Value::Truth(false), Value::Missing]);
@@ -211,7 +202,7 @@ impl<'p> Iterator for Rows<'p> {
             self.agent = (agent + 1) % agents;
             let state = self.run.state();
             let slot = state.slot(agent, 0);
-            let slot = state.present[slot.block].has(slot.lane).then_some(slot);
+            let slot = state.is_present(slot).then_some(slot);
             // An agent of a source, which keeps many more places than are taken, has rows while it is in the scene.
             if slot.is_some() || !self.program.arrivals.comes(agent) {
                 return Some(self.row(trial, agent, slot));
@@ -230,7 +221,7 @@ fn modes<'p>(program: &'p Program, state: &State, slot: Option<Slot>) -> Vec<Val
         .filter(|(_, behaviour)| !behaviour.states.is_empty())
         .map(|(k, behaviour)| {
             let here = modes.get(k).zip(slot);
-            let mode = here.map_or(-1.0, |(modes, slot)| modes[slot.block].0[slot.lane]);
+            let mode = here.map_or(-1.0, |(modes, slot)| slot.of(modes));
             // Nobody is in a state with a negative number.
             let name = if mode < 0.0 { None } else { behaviour.states.get(mode as usize) };
             name.map_or(Value::Missing, |name| Value::Word(name.as_str().into()))

@@ -9,13 +9,13 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::page::{self, Trials};
-use super::terminal::{Colors, print, warn};
+use super::terminal::{Colors, warn};
+use super::values::threads;
 use crate::base::geometry::Vec2;
 use crate::base::random::{MOST_TRIALS, TrialKey};
 use crate::base::visible::visible;
-use crate::compile::nearest::nearest;
 use crate::engine::traces::FIRST;
-use crate::engine::{Threads, placeable, smaller};
+use crate::engine::{placeable, smaller};
 use crate::gait;
 use crate::kernel::Program;
 use crate::library;
@@ -32,9 +32,10 @@ use trials::Task;
 
 /// Runs the command.
 pub(super) fn run(arguments: &WalkCommand, colors: Colors) -> Exit {
-    let inputs::Loaded { inputs, paths, .. } = inputs::load(&arguments.model, &[]);
-    complaint::diagnose(&inputs, colors);
-    let Some(study) = &inputs.study else { return Exit::Wrong };
+    let Some((study, inputs::Loaded { inputs, paths })) = inputs::load_or_tell(&arguments.model, &[], colors)
+    else {
+        return Exit::Wrong;
+    };
     let Some(world) = study.worlds.get(study.base) else { return Exit::Wrong };
     let sweep = || complaint::argument("walks cannot be written for a sweep", "write `--set name=value`");
     let done = checked(arguments)
@@ -43,10 +44,7 @@ pub(super) fn run(arguments: &WalkCommand, colors: Colors) -> Exit {
         .and_then(|()| output::guard(arguments.report.as_deref(), &paths))
         .and_then(|()| placeable(world).map_err(|fault| library::refusal(&fault)))
         .and_then(|()| walk(arguments, Arc::clone(&world.scenario), (&inputs.sources, colors)));
-    done.unwrap_or_else(|error| {
-        complaint::tell(&error, &inputs.sources, colors);
-        Exit::Wrong
-    })
+    complaint::end(done, &inputs.sources, colors)
 }
 
 /// Whether the numbers of a call are possible.
@@ -76,9 +74,7 @@ fn walk(
     library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
     let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
     let agents = chosen(&program, &arguments.agent)?;
-    let threads = Threads::new(arguments.threads).map_err(|error| {
-        complaint::argument(format!("no thread can be started: {error}"), "write fewer `--threads`")
-    })?;
+    let threads = threads(arguments.threads)?;
     let task = Task {
         program: &program,
         seed: arguments.seed,
@@ -183,10 +179,7 @@ fn chosen(program: &Program, names: &[String]) -> Result<Vec<usize>, Diagnostic>
     }
     let known: Vec<&str> = all.iter().map(|k| agents[*k].name.as_str()).collect();
     let find = |name: &String| {
-        let hint = || match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("agents with a route are {}", known.join(", ")),
-        };
+        let hint = || complaint::meant(name, &known, "agents with a route are");
         let title = if agents.iter().any(|agent| agent.name == *name) {
             format!("agent `{name}` has no route from the start of a trial on")
         } else {
@@ -202,25 +195,18 @@ fn chosen(program: &Program, names: &[String]) -> Result<Vec<usize>, Diagnostic>
 }
 
 fn write(arguments: &WalkCommand, scenario: &Scenario, walked: &Walked) -> Result<(), Diagnostic> {
-    let failed = |error: std::io::Error| match &arguments.output {
-        Some(path) => complaint::output(format!("`{}` cannot be written: {error}", path.display())),
-        None => complaint::output(error.to_string()),
-    };
-    let mut bytes = Vec::new();
-    match arguments.format {
-        WalkFormat::Text => bytes.extend(visible(&walked::to_text(walked)).bytes()),
-        WalkFormat::Json => bytes.extend(walked::to_json(walked).bytes()),
-        WalkFormat::Csv => walked::write_csv(&mut bytes, walked).map_err(failed)?,
-        WalkFormat::Svg => bytes.extend(walked::draw(scenario, walked).bytes()),
-        WalkFormat::Traces => {
-            let left_out = walked::write_traces(&mut bytes, walked, arguments.fps).map_err(failed)?;
+    let text = match arguments.format {
+        WalkFormat::Text => visible(&walked::to_text(walked)).into_owned(),
+        WalkFormat::Json => walked::to_json(walked),
+        WalkFormat::Csv => output::table(|out| walked::write_csv(out, walked))?,
+        WalkFormat::Svg => walked::draw(scenario, walked),
+        WalkFormat::Traces => output::table(|out| {
+            let left_out = walked::write_traces(out, walked, arguments.fps)?;
             if left_out > 0 {
                 warn(&format!("warning: {} that took no time left out\n", counted(left_out, "walk")));
             }
-        }
-    }
-    match &arguments.output {
-        Some(path) => output::write(path, |out| out.write_all(&bytes)).map_err(failed),
-        None => print(&String::from_utf8_lossy(&bytes)).map_err(complaint::output),
-    }
+            Ok(())
+        })?,
+    };
+    output::put(arguments.output.as_deref(), &text)
 }

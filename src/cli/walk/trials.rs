@@ -2,7 +2,6 @@
 //! trials, whatever the number of threads.
 
 use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::math;
 use crate::base::random::TrialKey;
 use crate::cli::end::early_end;
@@ -49,24 +48,19 @@ struct Moment {
     foot: Option<Foot>,
 }
 
-fn at(field: &[Lanes], slot: Slot) -> f64 {
-    field[slot.block].0[slot.lane]
-}
-
 impl Moment {
     fn now(state: &State, slot: Slot, before: Option<&Self>) -> Self {
-        let vector = |x: &[Lanes], y: &[Lanes]| Vec2::new(at(x, slot), at(y, slot));
         let angle = |along: Vec2| math::atan2(along.y, along.x).to_degrees();
-        let along = vector(&state.motion.vx, &state.motion.vy);
+        let along = state.velocity(slot);
         let heading = match before {
             _ if along.norm() >= STANDS => angle(along),
             Some(before) => before.heading,
-            None => angle(vector(&state.driving.ex, &state.driving.ey)),
+            None => angle(slot.vector(&state.driving.ex, &state.driving.ey)),
         };
         Self {
-            position: vector(&state.motion.x, &state.motion.y),
+            position: state.position(slot),
             heading,
-            steps: at(&state.progress.steps, slot) + f64::from(u8::from(state.plans.is_stepping(slot))),
+            steps: slot.of(&state.progress.steps) + f64::from(u8::from(state.plans.is_stepping(slot))),
             foot: present_foot(state, slot),
         }
     }
@@ -122,7 +116,7 @@ impl Task<'_> {
                 if self.keeps_places {
                     moments.push(Moment::now(state, slot, moments.last()));
                 }
-                while walks.len() < (at(&state.progress.legs, slot) as usize).min(legs) {
+                while walks.len() < (slot.of(&state.progress.legs) as usize).min(legs) {
                     walks.push(self.ended(state, slot, walks.len(), (moments, trial)));
                 }
                 is_done &= walks.len() == legs;
@@ -148,11 +142,11 @@ impl Task<'_> {
         leg: usize,
         (moments, trial): (&mut Vec<Moment>, u64),
     ) -> LegWalk {
-        let read = |k| state.progress.record(leg as u32, k).map_or(f64::NAN, |field| at(field, slot));
+        let read = |k| state.progress.record(leg as u32, k).map_or(f64::NAN, |field| slot.of(field));
         let measures = [0, 1, 2].map(read);
         let states = (measures[1] / self.program.scenario.clock.step_seconds()).round() as usize;
         let first = moments.len().saturating_sub(states.saturating_add(1));
-        let before = at(&state.progress.steps, slot) - measures[2];
+        let before = slot.of(&state.progress.steps) - measures[2];
         let places = places(&moments[first..], before, measures[2]);
         // The next leg begins in this state at the earliest.
         moments.drain(..moments.len().saturating_sub(1));

@@ -48,8 +48,7 @@ pub struct FilePlace {
 impl FilePlace {
     /// An error at this place.
     pub fn error(&self, message: impl Into<String>) -> GeometryError {
-        let Self { line, column, feature } = self.clone();
-        GeometryError { line, column, feature, message: message.into() }
+        GeometryError { place: self.clone(), message: message.into() }
     }
 }
 
@@ -123,24 +122,20 @@ impl Geometry {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.sentence())]
 pub struct GeometryError {
-    /// Line of the file from 1, where known.
-    pub line: Option<usize>,
-    /// Column of that line from 1, where known.
-    pub column: Option<usize>,
-    /// Which feature, from 1, and its name if it has one.
-    pub feature: Option<String>,
+    /// Where it is.
+    pub place: FilePlace,
     /// The error: one sentence, lower case, no full stop.
     pub message: String,
 }
 
 impl GeometryError {
     fn sentence(&self) -> String {
-        let mut text = match (self.line, self.column) {
+        let mut text = match (self.place.line, self.place.column) {
             (Some(line), Some(column)) => format!("line {line}, column {column}: "),
             (Some(line), None) => format!("line {line}: "),
             (None, _) => String::new(),
         };
-        if let Some(feature) = &self.feature {
+        if let Some(feature) = &self.place.feature {
             text = text + feature + ": ";
         }
         text + &self.message

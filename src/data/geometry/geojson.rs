@@ -72,16 +72,16 @@ pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature
 }
 
 fn malformed(error: &geojson::Error) -> GeometryError {
-    let (mut line, mut column, mut message) = (None, None, error.to_string());
+    let (mut at, mut message) = (FilePlace::default(), error.to_string());
     if let geojson::Error::MalformedGeoJson(json) = error {
         message = json.to_string();
         if json.line() > 0 {
-            (line, column) = (Some(json.line()), Some(json.column().max(1)));
+            (at.line, at.column) = (Some(json.line()), Some(json.column().max(1)));
             let place = format!(" at line {} column {}", json.line(), json.column());
             message = message.replace(&place, "");
         }
     }
-    GeometryError { line, column, feature: None, message: format!("the text is not GeoJSON: {message}") }
+    at.error(format!("the text is not GeoJSON: {message}"))
 }
 
 fn property(value: JsonValue) -> PropertyValue {
@@ -179,8 +179,8 @@ mod tests {
     #[test]
     fn broken_text_has_a_place() {
         let errors = read_geojson("{\n  \"type\": \"Point\",\n  \"coordinates\": [1, oops]\n}").unwrap_err();
-        assert_eq!((errors[0].line, errors[0].feature.as_ref()), (Some(3), None));
-        assert!(errors[0].column.is_some());
+        assert_eq!((errors[0].place.line, errors[0].place.feature.as_ref()), (Some(3), None));
+        assert!(errors[0].place.column.is_some());
         assert!(read_geojson("{\"type\": \"Point\"}").is_err());
         assert!(read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").is_err());
         let fault = |text| read_geojson(text).unwrap_err()[0].message.clone();

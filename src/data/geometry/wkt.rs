@@ -9,19 +9,8 @@ use wkt::types::{Coord, LineString, Polygon};
 /// Deepest nesting of parentheses; beyond it the text is refused before it is parsed.
 const DEEPEST: usize = 64;
 /// The content of parentheses other than numbers.
-const WORDS: [&str; 11] = [
-    "point",
-    "linestring",
-    "polygon",
-    "multipoint",
-    "multilinestring",
-    "multipolygon",
-    "geometrycollection",
-    "empty",
-    "z",
-    "m",
-    "zm",
-];
+const WORDS: &str =
+    "point linestring polygon multipoint multilinestring multipolygon geometrycollection empty z m zm";
 
 /// Reads all geometries, as features without name and properties. Empty ones are passed over.
 ///
@@ -43,8 +32,8 @@ pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
                     let word = words(&piece.text[at..]).next().map_or("", |(_, word)| word);
                     let (line, column) = after((piece.line, piece.column), &piece.text[..at]);
                     let message = format!("the text is not WKT: `{word}` is not a number");
-                    let (line, column) = (Some(line), Some(column));
-                    errors.push(GeometryError { line, column, feature: None, message });
+                    let place = FilePlace { line: Some(line), column: Some(column), feature: None };
+                    errors.push(place.error(message));
                 }
                 None => fail(format!("the text is not WKT: {}", lower_case_start(message))),
             },
@@ -96,7 +85,7 @@ fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
 /// Where within its parentheses a geometry has something that is neither a number nor a word of this language.
 fn no_number(text: &str) -> Option<usize> {
     let open = text.find('(')?;
-    let known = |word: &str| WORDS.iter().any(|known| known.eq_ignore_ascii_case(word));
+    let known = |word: &str| WORDS.split(' ').any(|known| known.eq_ignore_ascii_case(word));
     let (at, _) = words(&text[open..]).find(|(_, word)| word.parse::<f64>().is_err() && !known(word))?;
     Some(open + at)
 }
@@ -209,7 +198,8 @@ mod tests {
     fn every_fault_has_its_place() {
         let text = "POINT (1 2)\n  POINT (1 oops)\nPOLYGON ((0 0, 1 1, 0 0)) POINT (1e999 0)\nLINESTRING (0 0,\n 3 x) SRID";
         let errors = read_wkt(text).unwrap_err();
-        let places: Vec<_> = errors.iter().map(|e| (e.line.unwrap(), e.column.unwrap())).collect();
+        let places: Vec<_> =
+            errors.iter().map(|e| (e.place.line.unwrap(), e.place.column.unwrap())).collect();
         assert_eq!(places, [(2, 12), (3, 1), (3, 27), (5, 4), (5, 7)]);
         assert_eq!(errors[0].message, "the text is not WKT: `oops` is not a number");
         assert_eq!(errors[3].message, "the text is not WKT: `x` is not a number");

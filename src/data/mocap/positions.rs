@@ -39,7 +39,7 @@ pub(super) fn table<'t, const N: usize>(
 }
 
 /// An error of the CSV reader.
-pub(super) fn fault(error: &csv::Error) -> LineError {
+fn fault(error: &csv::Error) -> LineError {
     let line = error.position().map_or(0, |position| position.line() as usize);
     let message = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -48,6 +48,14 @@ pub(super) fn fault(error: &csv::Error) -> LineError {
         _ => "the row is not CSV".to_owned(),
     };
     LineError::whole(line, message)
+}
+
+/// A row that is CSV; else its error is added.
+pub(super) fn good(
+    row: Result<StringRecord, csv::Error>,
+    errors: &mut Vec<LineError>,
+) -> Option<StringRecord> {
+    row.map_err(|error| errors.push(fault(&error))).ok()
 }
 
 /// A field with the line and the column at which it begins, in a row without quotes.
@@ -69,13 +77,7 @@ pub(super) fn read_positions(text: &str, layout: &Layout) -> Result<Vec<Clip>, V
     let (timed, name) = (&header[at[15]] == "t", header.iter().position(|field| field == "clip"));
     let (mut clips, mut known, mut errors) = (Vec::<Clip>::new(), BTreeMap::new(), Vec::new());
     for row in reader.records() {
-        let row = match row {
-            Ok(row) => row,
-            Err(error) => {
-                errors.push(fault(&error));
-                continue;
-            }
-        };
+        let Some(row) = good(row, &mut errors) else { continue };
         let before = errors.len();
         let mut places = Places::default();
         let mut mark = 0.0;

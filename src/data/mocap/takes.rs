@@ -1,7 +1,7 @@
 //! Reader of a table of takes: a CSV with columns `file`, `clip`, `subject` and `fps`, one row per take.
 
 use super::pose::number;
-use super::positions::{fault, field, table};
+use super::positions::{field, good, table};
 use crate::data::tracks::LineError;
 use std::collections::BTreeMap;
 
@@ -38,13 +38,7 @@ pub fn read_take_table(text: &str) -> Result<Vec<TakeRow>, Vec<LineError>> {
     let (mut rows, mut errors, mut counts) = (Vec::new(), Vec::new(), BTreeMap::new());
     let mut seen = BTreeMap::new();
     for row in reader.records() {
-        let row = match row {
-            Ok(row) => row,
-            Err(error) => {
-                errors.push(fault(&error));
-                continue;
-            }
-        };
+        let Some(row) = good(row, &mut errors) else { continue };
         let [file, clip, subject] = [at[0], at[1], at[2]].map(|k| row[k].to_owned());
         let (line, rate) = field(&row, at[3]);
         let fps = if rate.1.is_empty() { Ok(None) } else { number(line, rate).map(Some) };

@@ -11,6 +11,7 @@ use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use ::parquet::schema::types::Type;
 use std::io::{self, Write};
+use std::mem::take;
 use std::sync::Arc;
 
 /// Rows of a group, which are in memory at one time.
@@ -50,48 +51,24 @@ impl Cells {
     }
 
     fn push(&mut self, value: &Value<'_>) {
-        let is_there = match (&mut self.values, value) {
-            (Values::Number(list), Value::Number(number)) if !number.is_nan() => {
-                list.push(*number);
-                true
-            }
-            (Values::Whole(list), Value::Whole(whole)) => {
-                list.push(*whole);
-                true
-            }
-            (Values::Word(list), Value::Word(word)) => {
-                list.push(ByteArray::from(word.as_ref()));
-                true
-            }
-            (Values::Truth(list), Value::Truth(truth)) => {
-                list.push(*truth);
-                true
-            }
-            _ => false,
-        };
-        self.levels.push(i16::from(is_there));
+        match (&mut self.values, value) {
+            (Values::Number(list), Value::Number(number)) if !number.is_nan() => list.push(*number),
+            (Values::Whole(list), Value::Whole(whole)) => list.push(*whole),
+            (Values::Word(list), Value::Word(word)) => list.push(ByteArray::from(word.as_ref())),
+            (Values::Truth(list), Value::Truth(truth)) => list.push(*truth),
+            _ => return self.levels.push(0),
+        }
+        self.levels.push(1);
     }
 
     fn write(&mut self, column: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
         let levels = Some(self.levels.as_slice());
         match &mut self.values {
-            Values::Number(list) => {
-                column.typed::<DoubleType>().write_batch(list, levels, None)?;
-                list.clear();
-            }
-            Values::Whole(list) => {
-                column.typed::<Int64Type>().write_batch(list, levels, None)?;
-                list.clear();
-            }
-            Values::Word(list) => {
-                column.typed::<ByteArrayType>().write_batch(list, levels, None)?;
-                list.clear();
-            }
-            Values::Truth(list) => {
-                column.typed::<BoolType>().write_batch(list, levels, None)?;
-                list.clear();
-            }
-        }
+            Values::Number(list) => column.typed::<DoubleType>().write_batch(&take(list), levels, None)?,
+            Values::Whole(list) => column.typed::<Int64Type>().write_batch(&take(list), levels, None)?,
+            Values::Word(list) => column.typed::<ByteArrayType>().write_batch(&take(list), levels, None)?,
+            Values::Truth(list) => column.typed::<BoolType>().write_batch(&take(list), levels, None)?,
+        };
         self.levels.clear();
         Ok(())
     }
@@ -155,7 +132,7 @@ impl<W: Write> Parquet<W> {
 
     /// Hands on what is complete. The places of groups count what has been written, not what is kept.
     fn hand_on(&mut self) -> io::Result<()> {
-        let made = std::mem::take(self.file.inner_mut());
+        let made = take(self.file.inner_mut());
         self.out.write_all(&made)
     }
 }

@@ -8,7 +8,7 @@
 //! the distance in frames between two observations of one person gives the rate: 10 frames mean 25 frames
 //! per second (hotel), 6 mean 15 (eth). Time 0 is the first annotated frame of the file.
 
-use super::line::{LineError, fields, number, quoted, whole_fault};
+use super::line::{LineError, numbers};
 use super::recording::{Clock, Person, Recording};
 use super::rows::{Row, people, usual_stride};
 use crate::base::geometry::{Vec2, coordinate_fault};
@@ -66,20 +66,7 @@ fn read_row(at: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Row> {
         return None;
     }
     let before = errors.len();
-    let mut values = [0.0; 8];
-    for (k, (column, field)) in fields(line).enumerate() {
-        let fault = match number(field) {
-            Err(fault) => Some(fault),
-            Ok(value) => {
-                values[k] = value;
-                (k < 2).then(|| whole_fault(value)).flatten()
-            }
-        };
-        if let Some(fault) = fault {
-            let message = format!("{} {} {fault}", NAMES[k], quoted(field));
-            errors.push(LineError::at(at, column, message));
-        }
-    }
+    let values = numbers(at, line, NAMES, errors);
     let position = Vec2::new(values[2], values[4]);
     if let Some(fault) = coordinate_fault(position) {
         errors.push(LineError::whole(at, fault));

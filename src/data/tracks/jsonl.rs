@@ -1,7 +1,7 @@
 //! Reader of traces as JSON lines, as `smc simulate --format jsonl` writes them: objects with `time` (s), `agent`, `x` and `y`
 //! (m), and perhaps `trial`, `vx` and `vy` (m/s) and `present`. Other members are ignored.
 
-use super::line::{LineError, json_fault};
+use super::line::{LineError, json_fault, json_velocity};
 use super::recording::Recording;
 use super::timed::TimedRow;
 use super::traces::Traces;
@@ -59,11 +59,7 @@ fn point(line: &Line) -> Result<(Vec2, Option<Vec2>), String> {
     let (Some(x), Some(y)) = (line.x, line.y) else {
         return Err("an agent that is present must have `x` and `y`".to_owned());
     };
-    let velocity = match (line.vx, line.vy) {
-        (Some(x), Some(y)) => Some(Vec2::new(x, y)),
-        (None, None) => None,
-        _ => return Err("a line must have both `vx` and `vy` or neither".to_owned()),
-    };
+    let velocity = json_velocity("a line", line.vx, line.vy)?;
     let position = Vec2::new(x, y);
     coordinate_fault(position).map_or(Ok((position, velocity)), Err)
 }

@@ -1,5 +1,7 @@
 //! A fault in one line of a text table, and the fields of such a line.
 
+use crate::base::geometry::Vec2;
+
 /// An error of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.sentence())]
@@ -82,6 +84,34 @@ pub(in crate::data) fn whole_fault(value: f64) -> Option<&'static str> {
     } else {
         None
     }
+}
+
+/// The numbers in the first fields of a line, whose names are given; the first two are whole. Faults are added to the errors.
+pub(super) fn numbers<const N: usize>(
+    at: usize,
+    line: &str,
+    names: [&str; N],
+    errors: &mut Vec<LineError>,
+) -> [f64; N] {
+    let mut values = [0.0; N];
+    for (k, (column, field)) in fields(line).take(N).enumerate() {
+        let found = number(field).and_then(|value| {
+            values[k] = value;
+            whole_fault(value).filter(|_| k < 2).map_or(Ok(()), Err)
+        });
+        if let Err(fault) = found {
+            errors.push(LineError::at(at, column, format!("{} {} {fault}", names[k], quoted(field))));
+        }
+    }
+    values
+}
+
+/// A velocity of two members, if they are there.
+pub(super) fn json_velocity(what: &str, x: Option<f64>, y: Option<f64>) -> Result<Option<Vec2>, String> {
+    if x.is_some() != y.is_some() {
+        return Err(format!("{what} must have both `vx` and `vy` or neither"));
+    }
+    Ok(x.zip(y).map(|(x, y)| Vec2::new(x, y)))
 }
 
 /// An error of JSON in one line, at its character.

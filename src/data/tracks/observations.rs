@@ -4,7 +4,7 @@
 //! where `sensor`, `vx`, `vy`, `id` and `field` are optional. Other members are ignored.
 
 use super::batch::{Batch, Observation};
-use super::line::{LineError, json_fault};
+use super::line::{LineError, json_fault, json_velocity};
 use super::recording::Recording;
 use super::timed::{self, TimedRow};
 use crate::base::geometry::{Vec2, coordinate_fault};
@@ -35,7 +35,8 @@ struct Seen {
 /// twice, and a field with fewer than three corners.
 pub fn read_batch(line: &str) -> Result<Batch, LineError> {
     let read: Line = serde_json::from_str(line).map_err(|error| json_fault(1, line, &error))?;
-    let refuse = |message: String| Err(LineError::whole(1, message));
+    let wrong = |message: String| LineError::whole(1, message);
+    let refuse = |message: String| Err(wrong(message));
     let mut seen = Vec::with_capacity(read.seen.len());
     let mut ids = Vec::new();
     for one in &read.seen {
@@ -43,11 +44,7 @@ pub fn read_batch(line: &str) -> Result<Batch, LineError> {
         if let Some(fault) = coordinate_fault(position) {
             return refuse(fault);
         }
-        let velocity = match (one.vx, one.vy) {
-            (Some(x), Some(y)) => Some(Vec2::new(x, y)),
-            (None, None) => None,
-            _ => return refuse("an observation must have both `vx` and `vy` or neither".to_owned()),
-        };
+        let velocity = json_velocity("an observation", one.vx, one.vy).map_err(wrong)?;
         if let Some(id) = one.id {
             ids.push(id);
         }

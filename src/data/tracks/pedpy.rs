@@ -1,7 +1,7 @@
 //! Reader of the trajectories of `PedPy` and the pedestrian data archive of Jülich: a comment `# framerate: N`, then
 //! rows `id frame x y [z]`, separated by blanks, in metres. The height z is only checked to be a number.
 
-use super::line::{LineError, fields, number, quoted, whole_fault};
+use super::line::{LineError, number, numbers, quoted};
 use super::recording::{Clock, Recording};
 use super::rows::{Row, people, usual_stride};
 use crate::base::geometry::{Vec2, coordinate_fault};
@@ -61,19 +61,7 @@ fn read_row(line: usize, text: &str, errors: &mut Vec<LineError>) -> Option<Row>
         return None;
     }
     let before = errors.len();
-    let mut values = [0.0; 5];
-    for (k, (column, field)) in fields(text).take(5).enumerate() {
-        let fault = match number(field) {
-            Err(fault) => Some(fault),
-            Ok(value) => {
-                values[k] = value;
-                (k < 2).then(|| whole_fault(value)).flatten()
-            }
-        };
-        if let Some(fault) = fault {
-            errors.push(LineError::at(line, column, format!("{} {} {fault}", NAMES[k], quoted(field))));
-        }
-    }
+    let values = numbers(line, text, NAMES, errors);
     let position = Vec2::new(values[2], values[3]);
     if let Some(fault) = coordinate_fault(position) {
         errors.push(LineError::whole(line, fault));

@@ -1,7 +1,7 @@
 //! What was asked: a query under one setting, as reports quote it.
 
 /// A query under one setting.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AskedQuery {
     /// Its number among the queries of the call, from 0; together with the text it names the query.
     pub index: usize,
@@ -26,24 +26,15 @@ pub struct AskedQuery {
 impl AskedQuery {
     /// A query without name, place or setting.
     pub fn new(index: usize, kind: Kind, text: impl Into<String>) -> Self {
-        Self {
-            index,
-            name: None,
-            text: text.into(),
-            file: String::new(),
-            line: 0,
-            kind,
-            settings: Vec::new(),
-            horizon: None,
-            given: None,
-        }
+        Self { index, kind, text: text.into(), ..Self::default() }
     }
 }
 
 /// What a query asks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Whether a quantity passes a threshold.
+    #[default]
     Check,
     /// A quantity.
     Estimate,

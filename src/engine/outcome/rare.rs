@@ -1,7 +1,7 @@
 //! An estimate by splitting.
 
 /// An estimate by splitting, with the plain trials beside it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Rare {
     /// Independent runs.
     pub runs: u64,

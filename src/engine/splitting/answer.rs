@@ -71,7 +71,8 @@ impl Answers<'_> {
         });
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
-        result.witnesses = self.witnesses(&result, prepared, column, &picks);
+        let settings = &result.asked.settings;
+        result.witnesses = self.witnesses(&result, prepared, (column, None), &picks, settings);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }

@@ -135,8 +135,6 @@ impl Monitors for StepPaths<'_> {
         self.paths.finish(place, lane, run);
     }
 
-    fn cut(&mut self, _: usize, _: usize) {}
-
     fn refuse(&mut self, place: usize) {
         self.paths.refuse(place);
     }
@@ -243,8 +241,6 @@ impl Monitors for EventPaths<'_> {
     fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
         self.paths.finish(place, lane, run);
     }
-
-    fn cut(&mut self, _: usize, _: usize) {}
 
     fn refuse(&mut self, place: usize) {
         self.paths.refuse(place);

@@ -6,7 +6,7 @@ use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
 use std::collections::BTreeSet;
 
 /// An atom and when it held.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Bar {
     /// As it was written.
     pub text: String,

@@ -1,11 +1,11 @@
 //! Where the agents of a trial were: positions in whole millimetres at evenly spaced states.
 
 use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::plan::Plan;
 use crate::kernel::{Slot, State};
 use crate::model::{AgentId, Parameter, Period, Scenario};
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Time between two frames, s: the largest whole number of steps that is not longer, but one step at least.
@@ -42,7 +42,7 @@ pub struct Motion {
 }
 
 /// An agent from coming in to leaving.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Track {
     /// Its number in the scenario.
     pub agent: usize,
@@ -53,17 +53,19 @@ pub struct Track {
     /// The first frame.
     pub first: usize,
     /// Where it was from that frame on.
+    #[serde(flatten, serialize_with = "differences")]
     pub points: Vec<Millimetres>,
 }
 
 /// What an agent plans from a frame on; no points where it goes without a plan again.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlannedWay {
     /// Its number in the scenario.
     pub agent: usize,
     /// The first frame.
     pub first: usize,
     /// The points of the way.
+    #[serde(flatten, serialize_with = "differences")]
     pub points: Vec<Millimetres>,
 }
 
@@ -76,6 +78,15 @@ pub struct Membership {
     pub agent: usize,
     /// Number of the group; in none for `None`.
     pub group: Option<u64>,
+}
+
+/// The first place, then the differences, as `x` and `y`: they are short to write.
+fn differences<S: Serializer>(points: &[Millimetres], to: S) -> Result<S::Ok, S::Error> {
+    let of = |axis: usize| -> Vec<i32> {
+        let before = std::iter::once(0).chain(points.iter().map(|point| point[axis]));
+        points.iter().zip(before).map(|(point, before)| point[axis] - before).collect()
+    };
+    to.collect_map([("x", of(0)), ("y", of(1))])
 }
 
 pub(super) fn millimetres(place: Vec2) -> Millimetres {
@@ -129,12 +140,11 @@ impl Motion {
 
     fn see_agent(&mut self, scenario: &Scenario, state: &State, agent: usize) {
         let slot = state.slot(agent, 0);
-        if !state.present[slot.block].has(slot.lane) {
+        if !state.is_present(slot) {
             self.open[agent] = None;
             return;
         }
-        let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
-        let place = millimetres(Vec2::new(at(&state.motion.x), at(&state.motion.y)));
+        let place = millimetres(state.position(slot));
         let person = state.queues.later(agent, 0);
         self.numbers += 2;
         match self.open[agent] {
@@ -142,12 +152,11 @@ impl Motion {
                 self.tracks[track].points.push(place);
             }
             _ => {
-                let arrival = state.queues.arrival(&scenario.sources, AgentId(agent as u32), 0);
                 self.open[agent] = Some((self.tracks.len(), person));
                 self.tracks.push(Track {
                     agent,
-                    name: arrival.unwrap_or_else(|| scenario.agents[agent].name.clone()),
-                    radius: (at(&state.bodies[Parameter::Radius]) * 1000.0).round() as i32,
+                    name: state.name_of(scenario, AgentId(agent as u32), 0),
+                    radius: (slot.of(&state.bodies[Parameter::Radius]) * 1000.0).round() as i32,
                     first: self.frames,
                     points: vec![place],
                 });

@@ -33,9 +33,8 @@ const TURNING: f64 = 0.25;
 const WIDEST: [f64; 2] = [0.872_664_625_997_164_8, FRAC_PI_2];
 /// Speed below which a step can be a pivot, m/s.
 const PIVOTS_BELOW: f64 = 0.7;
-/// Length of first and last steps, over the usual one.
+/// Length of first steps, over the usual one.
 const FIRST: f64 = 0.57;
-const LAST: f64 = 0.56;
 /// Slowest walk that the relations are used for, m/s.
 const SLOWEST: f64 = 0.2;
 /// Speed of a root at rest over the usual one: it gives the path a direction there.
@@ -105,11 +104,6 @@ impl SyntheticGait {
         Self { person, pendulum: 9.81 / (0.53 * person.height) }
     }
 
-    /// Whose gait it is.
-    pub fn person(&self) -> &Person {
-        &self.person
-    }
-
     /// Steps a second at a speed (m/s).
     pub fn rate(&self, speed: f64) -> f64 {
         2.16 * math::pow(speed / self.person.height, 0.57)
@@ -122,10 +116,6 @@ impl SyntheticGait {
     }
 
     /// The widest turn of the next step to either side, rad.
-    pub fn widest_turn(&self, before: &Stance) -> f64 {
-        Self::widest(&self.entry(before))
-    }
-
     fn widest(entry: &Entry) -> f64 {
         WIDEST[usize::from(entry.speed < PIVOTS_BELOW)]
     }
@@ -190,26 +180,6 @@ impl SyntheticGait {
             duration,
         };
         Stance { last: Some((foot, self.shape(entry, foot, &exit))), drift: noise.drift }
-    }
-
-    /// The usual length of a last step, m.
-    pub fn last_length(&self) -> f64 {
-        LAST * self.length()
-    }
-
-    /// The last step to a place in its frame, which ends at rest. Its duration is the usual one, as in queues (Jelić et
-    /// al. 2012), but shorter or longer where the root would otherwise have to overshoot or to speed up.
-    pub fn stop(&self, before: &Stance, foot: Foot, place: Vec2) -> Shape {
-        let mut entry = self.entry(before);
-        let (length, usual, free) = (place.norm(), self.duration(), self.person.speed);
-        let longest = length / (0.4 * entry.speed);
-        let shortest = length / (0.75 * math::at_least(entry.speed, free));
-        let duration = math::at_least(math::at_least(math::at_most(usual, longest), shortest), 0.5 * usual);
-        // Beyond three times the mean speed a cubic polynomial overshoots its end.
-        entry.speed = math::at_most(entry.speed, 3.0 * length / duration);
-        let middle = if length > 0.0 { place / length } else { Vec2::x() };
-        let rise = middle * (REST * math::at_most(free * duration, length));
-        self.shape(&entry, foot, &Exit { chord: place, rise, middle, duration })
     }
 }
 

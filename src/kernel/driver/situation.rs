@@ -1,7 +1,6 @@
 //! What a driver is told.
 
 use crate::base::geometry::Vec2;
-use crate::base::lanes::Lanes;
 use crate::base::random::TrialKey;
 use crate::kernel::plan::{Occasion, Plan};
 use crate::kernel::state::{Slot, State};
@@ -72,7 +71,7 @@ impl<'a> Situation<'a> {
 
     /// A parameter of the agent at present, SI units.
     pub fn parameter(&self, parameter: Parameter) -> f64 {
-        self.state.bodies[parameter][self.slot.block].0[self.slot.lane]
+        self.slot.of(&self.state.bodies[parameter])
     }
 
     /// All other agents that are in the scene of this trial, by number.
@@ -81,13 +80,12 @@ impl<'a> Situation<'a> {
         let trial = state.layout.trial_of(self.slot.lane);
         (0..state.agents).map(move |agent| (agent, state.slot(agent, trial))).filter_map(
             move |(agent, slot)| {
-                let here = state.present[slot.block].has(slot.lane) && agent != own.0 as usize;
-                let of = |field: &[Lanes]| field[slot.block].0[slot.lane];
+                let here = state.is_present(slot) && agent != own.0 as usize;
                 here.then(|| Other {
                     agent: AgentId(agent as u32),
-                    position: Vec2::new(of(&state.motion.x), of(&state.motion.y)),
-                    velocity: Vec2::new(of(&state.motion.vx), of(&state.motion.vy)),
-                    radius: of(&state.bodies[Parameter::Radius]),
+                    position: state.position(slot),
+                    velocity: state.velocity(slot),
+                    radius: slot.of(&state.bodies[Parameter::Radius]),
                 })
             },
         )

@@ -163,11 +163,6 @@ impl Processes {
         self.embedded.as_ref()
     }
 
-    /// Whether there is anything to do.
-    pub fn is_empty(&self) -> bool {
-        self.initial.is_empty() && self.machines.is_empty()
-    }
-
     /// The same processes for the plainest vectors of the machine: the same bits, slower.
     pub fn at_baseline(mut self) -> Self {
         self.level = Level::baseline();

@@ -3,7 +3,7 @@
 use super::arrival::Arrivals;
 use crate::base::geometry::Nearby;
 use crate::base::geometry::{Bounds, Shape, Vec2};
-use crate::model::{AgentId, Barrier, Law, Obstacle, Parameter, Position, Scenario};
+use crate::model::{AgentId, Law, Parameter, Position, Scenario};
 use std::f64::consts::PI;
 
 /// Discs that are thrown and pushed jam at about this share of an area.
@@ -40,10 +40,6 @@ fn mean_square(law: &Law) -> f64 {
 
 /// The solids that reach into the surroundings of a shape. Walls take no area.
 fn solids<'a>(scenario: &'a Scenario, bounds: &Bounds) -> Vec<&'a Shape> {
-    let solid = |barrier: &'a Barrier| match &barrier.obstacle {
-        Obstacle::Wall(_) => None,
-        Obstacle::Solid(shape) => Some(shape),
-    };
     let reaches = |shape: &&Shape| {
         let other = shape.bounds();
         other.low.x < bounds.high.x
@@ -51,7 +47,7 @@ fn solids<'a>(scenario: &'a Scenario, bounds: &Bounds) -> Vec<&'a Shape> {
             && other.low.y < bounds.high.y
             && other.high.y > bounds.low.y
     };
-    scenario.scene.barriers.iter().filter_map(solid).filter(reaches).collect()
+    scenario.scene.solids().filter(reaches).collect()
 }
 
 /// A grid over the surroundings of a shape.

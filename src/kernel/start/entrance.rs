@@ -143,12 +143,10 @@ fn free_place(
         Position::Within(_) => program.starts.sampler(member.0 as usize)?,
         Position::Near { agent, within } => {
             let slot = state.slot(agent.0 as usize, lane);
-            if !state.present[slot.block].has(slot.lane) {
+            if !state.is_present(slot) {
                 return None;
             }
-            let centre =
-                Vec2::new(state.motion.x[slot.block].0[slot.lane], state.motion.y[slot.block].0[slot.lane]);
-            around = Sampler::Disc { centre, radius: *within };
+            around = Sampler::Disc { centre: state.position(slot), radius: *within };
             &around
         }
     };

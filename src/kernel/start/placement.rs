@@ -30,7 +30,7 @@ struct Barriers {
 
 impl Barriers {
     fn new(scene: &Scene) -> Self {
-        let with_pieces = |(k, barrier): (usize, &Barrier)| Some((k as u32, bounds(&barrier.obstacle)?));
+        let with_pieces = |(k, barrier): (usize, &Barrier)| Some((k as u32, barrier.obstacle.bounds()?));
         let all = scene.unrolled();
         let list: Vec<(u32, Bounds)> = all.iter().enumerate().filter_map(with_pieces).collect();
         let bounds: Vec<Bounds> = list.iter().map(|(_, bounds)| *bounds).collect();
@@ -85,13 +85,6 @@ impl Starts {
     pub(super) fn sampler(&self, agent: usize) -> Option<&Sampler> {
         let index = self.sampler_of.get(agent).copied().flatten()?;
         self.samplers.get(index as usize)
-    }
-}
-
-fn bounds(obstacle: &Obstacle) -> Option<Bounds> {
-    match obstacle {
-        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
-        Obstacle::Solid(shape) => Some(shape.bounds()),
     }
 }
 
@@ -289,7 +282,7 @@ mod tests {
                 let each = scene.barriers.iter().map(|barrier| &barrier.obstacle);
                 let wanted: Vec<&Obstacle> = each
                     .filter(|obstacle| {
-                        bounds(obstacle).is_some_and(|b| {
+                        obstacle.bounds().is_some_and(|b| {
                             p.x > b.low.x - reach
                                 && p.x < b.high.x + reach
                                 && p.y > b.low.y - reach

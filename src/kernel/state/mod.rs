@@ -29,8 +29,10 @@ pub use queues::Queues;
 pub use route::{Routes, Way};
 
 use super::fault::Fault;
+use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
+use crate::model::{AgentId, Scenario};
 
 /// The moving state of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,30 +127,32 @@ impl State {
         }
     }
 
+    /// Whether somebody is in a slot.
+    pub fn is_present(&self, slot: Slot) -> bool {
+        self.present[slot.block].has(slot.lane)
+    }
+
+    /// Where the agent in a slot is, m.
+    pub fn position(&self, slot: Slot) -> Vec2 {
+        slot.vector(&self.motion.x, &self.motion.y)
+    }
+
+    /// How fast the agent in a slot is, m/s.
+    pub fn velocity(&self, slot: Slot) -> Vec2 {
+        slot.vector(&self.motion.vx, &self.motion.vy)
+    }
+
+    /// The name of an agent of the trial in a lane; that of a person of a source has the number of the arrival.
+    pub fn name_of(&self, scenario: &Scenario, agent: AgentId, lane: usize) -> String {
+        let arrival = self.queues.arrival(&scenario.sources, agent, lane);
+        arrival.unwrap_or_else(|| scenario.agents[agent.0 as usize].name.clone())
+    }
+
     /// Number of trials that it can hold.
     pub fn width(&self) -> usize {
         match self.layout {
             Layout::Trials => LANES,
             Layout::Agents => 1,
-        }
-    }
-
-    /// A field of one agent as lanes are trials: in `Layout::Agents` its only value in every lane.
-    #[inline(always)]
-    pub fn lanes_of(&self, field: &[Lanes], agent: usize) -> Lanes {
-        match self.layout {
-            Layout::Trials => field[agent],
-            Layout::Agents => Lanes::splat(field[agent / LANES].0[agent % LANES]),
-        }
-    }
-
-    /// The lanes in which agent `agent` is present.
-    #[inline(always)]
-    pub fn present_in(&self, agent: usize) -> Mask {
-        match self.layout {
-            Layout::Trials => self.present[agent],
-            Layout::Agents if self.present[agent / LANES].has(agent % LANES) => Mask::ALL,
-            Layout::Agents => Mask::NONE,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Evaluated predictions for people.
 
 use super::{CONSTANT, Coverage, Evaluated, EvaluatedKind, EvaluatedProperty};
-use crate::report::number::{count, counted, estimated, plain};
+use crate::report::number::{count, counted, estimated, plain, thousandths};
 use crate::report::text::columns::table;
 use crate::stats::{Estimate, Quality};
 use std::fmt::Write as _;
@@ -69,13 +69,6 @@ fn compared(skill: &Estimate) -> String {
     }
 }
 
-/// Indented lines of a table.
-fn write<const N: usize>(out: &mut String, heads: [&str; N], rows: Vec<[String; N]>) {
-    for line in table(heads, rows) {
-        let _ = writeln!(out, "  {line}");
-    }
-}
-
 fn maybe(estimate: Option<&Estimate>) -> String {
     estimate.map_or_else(|| "-".to_owned(), |found| estimated(found, ""))
 }
@@ -93,7 +86,7 @@ fn scores(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
         ]
     });
     let heads = ["kind", "predictions", "unresolved", "Brier score", "skill", "calibration error"];
-    write(out, heads, rows.collect());
+    table(out, "  ", heads, rows.collect());
 }
 
 /// The terms of the Brier score.
@@ -108,7 +101,7 @@ fn terms(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
             score.within_bin_variance,
             score.within_bin_covariance,
         ];
-        let [a, b, c, d, e, f] = terms.map(|term| format!("{:.3}", (1e3 * term).round() / 1e3 + 0.0));
+        let [a, b, c, d, e, f] = terms.map(|term| format!("{:.3}", thousandths(term)));
         [kind.name.clone(), a, b, c, d, e, f]
     };
     let rows: Vec<_> = kinds
@@ -118,7 +111,7 @@ fn terms(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
     if !rows.is_empty() {
         let heads =
             ["terms", "base rate", "reliability", "resolution", "uncertainty", "variance", "covariance"];
-        write(out, heads, rows);
+        table(out, "  ", heads, rows);
     }
 }
 
@@ -142,7 +135,7 @@ fn distances(out: &mut String, kinds: &[EvaluatedKind]) {
         "\ndistances (m) of the mean path and of the best of {}",
         counted(found.best_of, "path")
     );
-    write(out, ["kind", "mean ADE", "mean FDE", "best ADE", "best FDE", "collision rate"], rows);
+    table(out, "  ", ["kind", "mean ADE", "mean FDE", "best ADE", "best FDE", "collision rate"], rows);
     let _ = writeln!(
         out,
         "  ADE: mean over all times; FDE: at the end; collision rate: share of paths that touch somebody"
@@ -161,7 +154,7 @@ fn coverage(out: &mut String, kinds: &[EvaluatedKind]) {
         .collect();
     if !rows.is_empty() {
         let _ = writeln!(out, "\nrecorded positions in the 90 % region of the predicted ones");
-        write(out, ["kind", "after s", "share", "log density"], rows);
+        table(out, "  ", ["kind", "after s", "share", "log density"], rows);
         let _ =
             writeln!(out, "  log density: mean logarithm of the density of the predicted positions, 1/m^2");
     }
@@ -179,6 +172,6 @@ fn realism(out: &mut String, kinds: &[EvaluatedKind]) {
     let rows: Vec<_> = kinds.iter().filter_map(row).collect();
     if !rows.is_empty() {
         let _ = writeln!(out, "\nmean log likelihood of the recorded motion among 32 trials; 0 is best");
-        write(out, ["kind", "speed", "acceleration", "nearest", "time to collision", "contact"], rows);
+        table(out, "  ", ["kind", "speed", "acceleration", "nearest", "time to collision", "contact"], rows);
     }
 }

@@ -76,18 +76,16 @@ impl<'v> Answer<'v> {
         }
     }
 
-    /// The unit of its figures; empty for probabilities.
-    pub(super) fn unit(&self) -> &'v str {
-        self.results[0]["unit"].as_str().unwrap_or_default()
-    }
-
     /// What its figures are.
     pub(super) fn axis(&self) -> String {
-        match self.unit() {
-            "" => "probability".to_owned(),
-            unit => format!("value ({unit})"),
-        }
+        let unit = self.results[0]["unit"].as_str().unwrap_or_default();
+        if unit.is_empty() { "probability".to_owned() } else { with_unit("value", unit) }
     }
+}
+
+/// What an axis has, with its unit.
+pub(super) fn with_unit(what: &str, unit: &str) -> String {
+    if unit.is_empty() { what.to_owned() } else { format!("{what} ({unit})") }
 }
 
 fn name_of(result: &Value) -> String {

@@ -31,9 +31,8 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
     }
     let mut frames = Vec::new();
     for name in shown {
-        let axes = [name.as_str(), "share that happened"].map(str::to_owned);
-        let axes = [format!("predicted probability of `{}`", axes[0]), axes[1].clone()];
-        let mut frame = Frame::new([&axes[0], &axes[1]], Scale::shares(), Scale::shares());
+        let axis = format!("predicted probability of `{name}`");
+        let mut frame = Frame::new([&axis, "share that happened"], Scale::shares(), Scale::shares());
         frame.line([(0.0, 0.0), (1.0, 1.0)], 4);
         let mut numbers = Vec::new();
         for (k, kind) in kinds.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The empirical distribution function of a metric with its simultaneous band (Dvoretzky, Kiefer and Wolfowitz 1956; Massart
 //! 1990). For `time_until(p)` it is P(F<=t p) over t.
 
-use super::answer::{Answer, Needed, number};
+use super::answer::{Answer, Needed, number, with_unit};
 use super::flaw::Flaw;
 use crate::report::svg::frame::{Frame, picture};
 use crate::report::svg::scale::Scale;
@@ -39,7 +39,7 @@ pub(super) fn frame(result: &Value) -> Option<Frame> {
     let room = 0.05 * (last - first).max(1e-9);
     let scale = Scale::linear([first - room, last + room].map(|x| if first >= 0.0 { x.max(0.0) } else { x }));
     let unit = result["unit"].as_str().unwrap_or_default();
-    let axis = if unit.is_empty() { "value".to_owned() } else { format!("value ({unit})") };
+    let axis = with_unit("value", unit);
     let band = found["band"].as_f64();
     let share =
         if band.is_some() { "share of trials at most, with its band" } else { "share of trials at most" };

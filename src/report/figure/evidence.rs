@@ -1,7 +1,7 @@
 //! How evidence grew over the trials, or the pairs of a comparison: the confidence sequence; the evidence of a test, for above upwards and for below
 //! downwards, between its thresholds; the trials of each option of a ranking, up to where it was eliminated.
 
-use super::answer::{Answer, Needed, interval, number};
+use super::answer::{Answer, Needed, interval, number, with_unit};
 use super::flaw::Flaw;
 use crate::report::svg::frame::{Frame, picture};
 use crate::report::svg::scale::Scale;
@@ -46,15 +46,14 @@ fn sequence(result: &Value, snapshots: &[Value]) -> Frame {
         (false, "") => ("trials", "probability"),
         (false, _) => ("trials", "value"),
     };
-    let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
     let level = if is_difference { Some((0.0, "no difference")) } else { None };
     let level = level.or_else(|| Some((result["method"]["theta"].as_f64()?, "threshold")));
     let numbers = snapshots.iter().flat_map(interval).chain(level.map(|(at, _)| at));
-    let y = match (unit.as_str(), is_difference) {
+    let y = match (unit, is_difference) {
         ("", false) => Scale::shares(),
         _ => Scale::linear(numbers),
     };
-    let axes = [trials_axis, &format!("{what}{unit}, with its interval")];
+    let axes = [trials_axis, &format!("{}, with its interval", with_unit(what, unit))];
     let mut frame = Frame::new(axes, Scale::log(snapshots.iter().map(trials)), y);
     let band = snapshots.iter().map(|one| (trials(one), interval(one)));
     let band: Vec<(f64, f64, f64)> = band.map(|(x, [low, _, high])| (x, low, high)).collect();

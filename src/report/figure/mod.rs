@@ -14,14 +14,15 @@ use serde_json::Value;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Figure {
     /// Results over a swept parameter.
     Sweep,
-    /// Options of a ranking.
+    /// Options of a ranking with their intervals.
     Ranking,
-    /// The distribution function of a metric.
+    /// The distribution function of a metric with its band.
     Distribution,
-    /// How evidence grew.
+    /// How the evidence grew over the trials.
     Evidence,
     /// Predicted probabilities against what happened.
     Calibration,

@@ -1,6 +1,6 @@
 //! Results over the values of a swept parameter, with their intervals; a line for each combination of other parameters.
 
-use super::answer::{Answer, Needed, interval, number};
+use super::answer::{Answer, Needed, interval, number, with_unit};
 use super::flaw::Flaw;
 use crate::report::svg::frame::{Frame, picture};
 use crate::report::svg::scale::Scale;
@@ -40,7 +40,7 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
         }
     }
     let unit = settings[0][name]["unit"].as_str().unwrap_or_default();
-    let axis = if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") };
+    let axis = with_unit(name, unit);
     let theta = answer.results.iter().map(|one| number(&one["method"]["theta"])).find(|x| x.is_finite());
     let all = || lines.iter().flat_map(|(_, points)| points);
     let x = Scale::linear(all().map(|(x, _)| *x));

@@ -3,6 +3,7 @@
 use crate::engine::outcome::Interval;
 use crate::report::escape::escape;
 use crate::report::number::plain;
+use crate::report::palette::Paint;
 use crate::report::svg::scale::Scale;
 use std::fmt::Write as _;
 
@@ -13,34 +14,13 @@ const NUMBERS: f64 = 300.0;
 const ROW: f64 = 24.0;
 const AXIS: f64 = 26.0;
 
-/// How a row looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tone {
-    Plain,
-    Good,
-    Bad,
-    Caution,
-    Faint,
-}
-
-impl Tone {
-    const fn class(self) -> &'static str {
-        match self {
-            Self::Plain => "plain",
-            Self::Good => "good",
-            Self::Bad => "bad",
-            Self::Caution => "caution",
-            Self::Faint => "faint",
-        }
-    }
-}
-
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mark {
     pub(super) label: String,
     pub(super) value: Interval,
-    pub(super) tone: Tone,
+    /// How it looks.
+    pub(super) tone: Paint,
     /// The numbers in words, at the right.
     pub(super) said: String,
 }

@@ -88,11 +88,6 @@ struct Html {
     replay: String,
 }
 
-/// The page of a run without traces.
-pub fn render(run: &CallResult) -> String {
-    page(Page { run: run.clone(), ..Page::default() })
-}
-
 /// A page.
 pub fn page(page: Page<'_>) -> String {
     let Page { run, sources, mut tables, traces, without_crowd } = page;
@@ -171,7 +166,7 @@ mod tests {
     #[test]
     fn nothing_gets_out_of_its_element() {
         let run = CallResult { scenario: "</title><img a='x' b=\"y\">".into(), ..CallResult::default() };
-        let page = render(&run);
+        let page = page(Page { run, ..Page::default() });
         assert!(!page.contains("<img") && page.contains("&#60;img"), "{page}");
     }
 }

@@ -1,13 +1,12 @@
 //! The part of a page about one query: alone, or under several settings.
 
-use super::chart::{self, Mark, Tone};
+use super::chart::{self, Mark};
 use super::histogram;
-use crate::engine::outcome::{
-    Interval, QueryResult, RankedOption, Shortfall, Side, Status, Verdict, Witness,
-};
+use crate::engine::outcome::{Interval, QueryResult, RankedOption, Shortfall, Side, Verdict, Witness};
 use crate::report::figure;
 use crate::report::json;
 use crate::report::number::{count, counted};
+use crate::report::palette::Paint;
 use crate::report::phrase::{certified, endless, one_line, settings};
 use crate::report::text;
 
@@ -158,8 +157,7 @@ fn facts(
         );
         Shown { moment, what: what.clone(), command: command.clone(), played: played(place, witness) }
     };
-    let figures = result.estimate.map_or(String::new(), |estimate| {
-        let value = Interval { estimate, low: result.low, high: result.high };
+    let figures = result.value().map_or(String::new(), |value| {
         let (estimate, interval) = text::printed(result, &value);
         format!("estimate {estimate}, interval {interval}")
     });
@@ -180,41 +178,28 @@ fn facts(
 /// The rows of the chart of one result.
 fn marks(result: &QueryResult) -> Vec<Mark> {
     if let Some(ranking) = &result.rank {
-        let tone = |status| match status {
-            Status::Chosen => Tone::Good,
-            Status::Tied => Tone::Plain,
-            Status::Beaten => Tone::Faint,
-            Status::Open => Tone::Caution,
-        };
         let row = |o: &RankedOption| {
             let note = format!("{}, {}", o.status.name(), counted(o.counts.trials, "trial"));
-            labelled(result, &o.label, o.value, tone(o.status), &note)
+            labelled(result, &o.label, o.value, o.status.into(), &note)
         };
         return ranking.options.iter().map(row).collect();
     }
     if let Some(sides) = &result.compare {
         let row = |side: &Side, tone| labelled(result, &side.label, side.value, tone, "");
         return vec![
-            row(&sides.first, Tone::Plain),
-            row(&sides.second, Tone::Plain),
-            row(&sides.difference, Tone::Good),
+            row(&sides.first, Paint::Neutral),
+            row(&sides.second, Paint::Neutral),
+            row(&sides.difference, Paint::Good),
         ];
     }
     mark(result, "").into_iter().collect()
 }
 
 fn mark(result: &QueryResult, label: &str) -> Option<Mark> {
-    let value = Interval { estimate: result.estimate?, low: result.low, high: result.high };
-    let tone = match result.verdict {
-        Some(Verdict::Satisfied) => Tone::Good,
-        Some(Verdict::Violated) => Tone::Bad,
-        Some(Verdict::Undecided) => Tone::Caution,
-        None => Tone::Plain,
-    };
-    Some(labelled(result, label, value, tone, ""))
+    Some(labelled(result, label, result.value()?, text::word(result).1, ""))
 }
 
-fn labelled(result: &QueryResult, label: &str, value: Interval, tone: Tone, note: &str) -> Mark {
+fn labelled(result: &QueryResult, label: &str, value: Interval, tone: Paint, note: &str) -> Mark {
     let (estimate, interval) = text::printed(result, &value);
     let note = if note.is_empty() { String::new() } else { format!(" ({note})") };
     Mark { label: label.to_owned(), value, tone, said: format!("{estimate}  {interval}{note}") }

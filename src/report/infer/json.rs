@@ -12,26 +12,6 @@ const SCHEMA: u32 = 1;
 pub fn to_json(report: &InferredFile) -> String {
     let (options, found) = (report.options, report.inference);
     let (tracking, clustering) = (options.tracking, options.clustering);
-    let tracks = found.tracks.map(|score| {
-        json!({
-            "tracks": score.tracks,
-            "unsplit": score.unsplit,
-            "switches": score.switches,
-            "idf1": score.idf1,
-            "joins": score.joins,
-            "wrong_joins": score.wrong_joins,
-        })
-    });
-    let groups = found.score.map(|score| {
-        json!({
-            "annotated": score.annotated,
-            "together": score.together,
-            "always": score.always,
-            "share": score.share,
-            "precision": score.precision,
-            "recall": score.recall,
-        })
-    });
     let all = json!({
         "schema": SCHEMA,
         "file": report.file,
@@ -55,7 +35,7 @@ pub fn to_json(report: &InferredFile) -> String {
         "intervals": found.intervals.iter().map(|(from, to)| [*from, *to].map(thousandths)).collect::<Vec<_>>(),
         "traces": found.traces.iter().map(trace).collect::<Vec<_>>(),
         "groups": found.groups.iter().map(group).collect::<Vec<_>>(),
-        "score": { "tracks": tracks, "groups": groups },
+        "score": { "tracks": found.tracks, "groups": found.score },
     });
     format!("{all}\n")
 }

@@ -15,12 +15,7 @@ pub fn to_page<'a>(report: &InferredFile, scene: Scene, sources: &'a [Source]) -
     let found = report.inference;
     let trace = recorded(report.file, scene, &walks(found));
     Page {
-        run: CallResult {
-            scenario: format!("Traces and groups of {}", report.file),
-            seed: report.options.key.seed,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            ..CallResult::default()
-        },
+        run: CallResult::of(format!("Traces and groups of {}", report.file), report.options.key.seed),
         sources,
         tables: [counts(found)].into_iter().chain(scores(found)).collect(),
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },

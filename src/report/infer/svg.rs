@@ -29,15 +29,15 @@ pub fn to_svg(report: &InferredFile) -> String {
             *count += 1.0;
         }
         for (sum, count) in groups.into_values() {
-            drawing.shape(&Shape::Circle { centre: sum / count, radius: RADIUS * count.sqrt() }, Ink::Group);
+            drawing.shape(&Shape::Circle { centre: sum / count, radius: RADIUS * count.sqrt() }, Ink::GROUP);
         }
     }
     for one in &found.traces {
         let points: Vec<Vec2> = one.trace.points.iter().map(|point| point.position).collect();
-        drawing.line(&points, Ink::Trace);
+        drawing.line(&points, Ink::TRACE);
         if let (Some(first), Some(last)) = (points.first(), points.last()) {
-            drawing.dot(*first, Ink::TraceStart);
-            drawing.dot(*last, Ink::TraceEnd);
+            drawing.dot(*first, Ink::TRACE_START);
+            drawing.dot(*last, Ink::TRACE_END);
         }
     }
     drawing.finish(&format!("Traces and groups of {} ({} velocities)", report.file, report.velocity.name()))

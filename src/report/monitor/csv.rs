@@ -1,6 +1,7 @@
 //! Monitored properties as CSV, one row an instant of a person.
 
 use super::Monitored;
+use crate::report::number::thousandths;
 use std::io;
 
 /// `time,person` and a column for each property: `true`, `false` or `unresolved`. Times are to 1 ms.
@@ -12,8 +13,7 @@ pub fn write_csv(out: impl io::Write, report: &Monitored) -> io::Result<()> {
     let names = report.results.iter().map(|one| one.name.as_str());
     table.write_record(["time", "person"].into_iter().chain(names))?;
     for one in &report.instants {
-        let time = (one.time * 1e3).round() / 1e3;
-        let cells = [time.to_string(), one.person.to_string()];
+        let cells = [thousandths(one.time).to_string(), one.person.to_string()];
         let verdicts = one.verdicts.iter().map(|verdict| verdict.name());
         table.write_record(cells.iter().map(String::as_str).chain(verdicts))?;
     }

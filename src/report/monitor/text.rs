@@ -30,9 +30,7 @@ pub fn to_text(report: &Monitored) -> String {
         [one.name.clone(), satisfied, violated, unresolved, persons, share]
     });
     let heads = ["property", "satisfied", "violated", "unresolved", "persons", "share satisfied"];
-    for line in table(heads, rows.collect()) {
-        let _ = writeln!(out, "{line}");
-    }
+    table(&mut out, "", heads, rows.collect());
     let _ = writeln!(
         out,
         "\nshare satisfied: of the resolved instants, with a {} % interval (bootstrap over persons)",

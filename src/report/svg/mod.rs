@@ -16,54 +16,41 @@ const SIZE: f64 = 900.0;
 /// Room for axes and labels, pixels.
 const MARGIN: f64 = 46.0;
 
-/// How something is drawn.
+/// How something is drawn: the attributes of its element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ink {
-    /// Walls and obstacles: nearly black.
-    Barrier,
-    /// Regions: very light.
-    Region,
-    /// Where agents start: light.
-    Start,
-    /// A way: of medium brightness.
-    Way,
-    /// Edges of a roadmap: thin and light.
-    Roadmap,
-    /// Steps with the left foot: thin and dark.
-    LeftStep,
-    /// Steps with the right foot: thin and light.
-    RightStep,
-    /// One of many walks: thin, and transparent.
-    Walk,
-    /// An inferred trace: black.
-    Trace,
-    /// The start of a trace: blue.
-    TraceStart,
-    /// The end of a trace: red.
-    TraceEnd,
-    /// A group at an instant: a thin black rim.
-    Group,
-}
+pub struct Ink(&'static str);
 
 impl Ink {
-    const fn attributes(self) -> &'static str {
-        match self {
-            Self::Barrier => "fill=\"#37474f\" stroke=\"#1c262b\" stroke-width=\"2\"",
-            Self::Region => "fill=\"#fff3c4\" stroke=\"#b8a35a\" stroke-dasharray=\"4 3\"",
-            Self::Start => "fill=\"#bfe0f5\" stroke=\"#5b93b5\" stroke-dasharray=\"2 2\"",
-            Self::Roadmap => "fill=\"none\" stroke=\"#9aa5ab\" stroke-width=\"0.5\"",
-            Self::LeftStep => "fill=\"none\" stroke=\"#1f4e79\" stroke-width=\"0.6\" stroke-opacity=\"0.5\"",
-            Self::RightStep => "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"0.6\" stroke-opacity=\"0.5\"",
-            Self::Walk => {
-                "fill=\"none\" stroke=\"#7c2d12\" stroke-width=\"0.8\" stroke-opacity=\"0.25\" stroke-linejoin=\"round\""
-            }
-            Self::Trace => "fill=\"none\" stroke=\"#000000\" stroke-width=\"1\" stroke-linejoin=\"round\"",
-            Self::TraceStart => "fill=\"#1d4ed8\" stroke=\"none\"",
-            Self::TraceEnd => "fill=\"#dc2626\" stroke=\"none\"",
-            Self::Group => "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.6\"",
-            Self::Way => "fill=\"none\" stroke=\"#c2410c\" stroke-width=\"2\" stroke-linejoin=\"round\"",
-        }
-    }
+    /// Walls and obstacles: nearly black.
+    pub const BARRIER: Self = Self(r##"fill="#37474f" stroke="#1c262b" stroke-width="2""##);
+    /// Regions: very light.
+    pub const REGION: Self = Self(r##"fill="#fff3c4" stroke="#b8a35a" stroke-dasharray="4 3""##);
+    /// Where agents start: light.
+    pub const START: Self = Self(r##"fill="#bfe0f5" stroke="#5b93b5" stroke-dasharray="2 2""##);
+    /// A way: of medium brightness.
+    pub const WAY: Self = Self(r##"fill="none" stroke="#c2410c" stroke-width="2" stroke-linejoin="round""##);
+    /// Edges of a roadmap: thin and light.
+    pub const ROADMAP: Self = Self(r##"fill="none" stroke="#9aa5ab" stroke-width="0.5""##);
+    /// Steps with the left foot: thin and dark.
+    pub const LEFT_STEP: Self =
+        Self(r##"fill="none" stroke="#1f4e79" stroke-width="0.6" stroke-opacity="0.5""##);
+    /// Steps with the right foot: thin and light.
+    pub const RIGHT_STEP: Self =
+        Self(r##"fill="none" stroke="#e69f00" stroke-width="0.6" stroke-opacity="0.5""##);
+    /// One of many walks: thin, and transparent.
+    pub const WALK: Self = Self(concat!(
+        r##"fill="none" stroke="#7c2d12" stroke-width="0.8" stroke-opacity="0.25""##,
+        r#" stroke-linejoin="round""#
+    ));
+    /// An inferred trace: black.
+    pub const TRACE: Self =
+        Self(r##"fill="none" stroke="#000000" stroke-width="1" stroke-linejoin="round""##);
+    /// The start of a trace: blue.
+    pub const TRACE_START: Self = Self(r##"fill="#1d4ed8" stroke="none""##);
+    /// The end of a trace: red.
+    pub const TRACE_END: Self = Self(r##"fill="#dc2626" stroke="none""##);
+    /// A group at an instant: a thin black rim.
+    pub const GROUP: Self = Self(r##"fill="none" stroke="#000000" stroke-width="0.6""##);
 }
 
 /// A drawing of a part of the plane.
@@ -98,8 +85,7 @@ impl Drawing {
     /// A line through points, m.
     pub fn line(&mut self, points: &[Vec2], ink: Ink) {
         let points = self.points(points);
-        let _ =
-            writeln!(self.body, "<polyline points=\"{points}\" {} fill-opacity=\"0\"/>", ink.attributes());
+        let _ = writeln!(self.body, "<polyline points=\"{points}\" {} fill-opacity=\"0\"/>", ink.0);
     }
 
     /// A shape, with holes.
@@ -115,8 +101,8 @@ impl Drawing {
                 format!("<path fill-rule=\"evenodd\" d=\"{}\"", path.join(" "))
             }
         };
-        let opacity = if ink == Ink::Start { 0.7 } else { 1.0 };
-        let _ = writeln!(self.body, "{drawn} {} fill-opacity=\"{opacity}\"/>", ink.attributes());
+        let opacity = if ink == Ink::START { 0.7 } else { 1.0 };
+        let _ = writeln!(self.body, "{drawn} {} fill-opacity=\"{opacity}\"/>", ink.0);
     }
 
     /// A square cell from its lower left corner, m, the darker the larger a share in 0 .. 1.
@@ -139,11 +125,8 @@ impl Drawing {
     /// A dot.
     pub fn dot(&mut self, p: Vec2, ink: Ink) {
         let (x, y) = self.at(p);
-        let _ = writeln!(
-            self.body,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" {} fill-opacity=\"1\"/>",
-            ink.attributes()
-        );
+        let _ =
+            writeln!(self.body, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" {} fill-opacity=\"1\"/>", ink.0);
     }
 
     /// A text whose middle is at a place, m.
@@ -241,8 +224,8 @@ mod tests {
         assert_eq!([0.9, 1.0, 4.9, 5.0, 19.0, 20.0].map(round_step), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]);
         let mut drawing = Drawing::new(Bounds { low: Vec2::zeros(), high: Vec2::new(20.0, 10.0) });
         drawing.text(Vec2::new(1.0, 1.0), "</svg><script>");
-        drawing.line(&[Vec2::zeros(), Vec2::new(3.0, 3.0)], Ink::Start);
-        for ink in [Ink::Barrier, Ink::Region, Ink::Start, Ink::Way, Ink::Roadmap] {
+        drawing.line(&[Vec2::zeros(), Vec2::new(3.0, 3.0)], Ink::START);
+        for ink in [Ink::BARRIER, Ink::REGION, Ink::START, Ink::WAY, Ink::ROADMAP] {
             drawing.dot(Vec2::zeros(), ink);
             drawing.shape(&Shape::Circle { centre: Vec2::zeros(), radius: 1.0 }, ink);
         }

@@ -69,32 +69,29 @@ pub fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing
         Position::Within(shape) => Some(shape.bounds()),
         _ => None,
     });
-    let barriers = scene.barriers.iter().filter_map(|barrier| match &barrier.obstacle {
-        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
-        Obstacle::Solid(shape) => Some(shape.bounds()),
-    });
+    let barriers = scene.barriers.iter().filter_map(|barrier| barrier.obstacle.bounds());
     let corners = shapes.chain(starts).chain(barriers).flat_map(|b| [b.low, b.high]);
     let ends = scene.lines.iter().flat_map(|line| [line.segment.a, line.segment.b]);
     let all = corners.chain(ends).chain(scene.points.iter().map(|(_, point)| *point)).chain(points);
     let bounds = Bounds::around(all).unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::new(1.0, 1.0) });
     let mut drawing = Drawing::new(bounds);
     for region in &scene.regions {
-        drawing.shape(&region.shape, Ink::Region);
+        drawing.shape(&region.shape, Ink::REGION);
     }
     for line in &scene.lines {
-        drawing.line(&[line.segment.a, line.segment.b], Ink::Region);
+        drawing.line(&[line.segment.a, line.segment.b], Ink::REGION);
     }
     for agent in &shown {
         match &agent.start.position {
-            Position::Within(shape) => drawing.shape(shape, Ink::Start),
-            Position::Point(point) => drawing.dot(*point, Ink::Start),
+            Position::Within(shape) => drawing.shape(shape, Ink::START),
+            Position::Point(point) => drawing.dot(*point, Ink::START),
             Position::Near { .. } => {}
         }
     }
     for barrier in &scene.barriers {
         match &barrier.obstacle {
-            Obstacle::Wall(segments) => segments.iter().for_each(|s| drawing.line(&[s.a, s.b], Ink::Barrier)),
-            Obstacle::Solid(shape) => drawing.shape(shape, Ink::Barrier),
+            Obstacle::Wall(segments) => segments.iter().for_each(|s| drawing.line(&[s.a, s.b], Ink::BARRIER)),
+            Obstacle::Solid(shape) => drawing.shape(shape, Ink::BARRIER),
         }
     }
     drawing
@@ -112,7 +109,7 @@ pub fn draw(scenario: &Scenario) -> String {
     let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
     let mut drawing = drawn(scenario, ways.iter().flat_map(|(points, _)| points.iter().copied()));
     for (points, length) in &ways {
-        drawing.line(points, Ink::Way);
+        drawing.line(points, Ink::WAY);
         drawing.text(middle(points), &format!("{} m", plain((length * 10.0).round() / 10.0)));
     }
     name_places(&mut drawing, scenario);
@@ -128,7 +125,7 @@ pub fn name_places(drawing: &mut Drawing, scenario: &Scenario) {
         drawing.text(0.5 * (line.segment.a + line.segment.b), &line.name);
     }
     for (name, at) in &scenario.scene.points {
-        drawing.dot(*at, Ink::Region);
+        drawing.dot(*at, Ink::REGION);
         drawing.text(*at, name);
     }
 }

@@ -1,6 +1,7 @@
 //! How numbers become places on the axis of a figure, and the round numbers at its ticks.
 
 use crate::base::math;
+use crate::report::number::{exponent, power};
 
 /// Decades over which an axis has ticks at powers of ten alone.
 const DECADES: i32 = 2;
@@ -82,16 +83,6 @@ fn ends(numbers: impl IntoIterator<Item = f64>) -> (f64, f64) {
 /// A tick without the rounding of its product.
 fn rounded(tick: f64) -> f64 {
     format!("{tick:.9e}").parse().unwrap_or(tick)
-}
-
-/// The exponent of a positive number in decimal digits.
-fn exponent(x: f64) -> i32 {
-    format!("{x:e}").split_once('e').and_then(|(_, digits)| digits.parse().ok()).unwrap_or(0)
-}
-
-/// A power of ten.
-fn power(exponent: i32) -> f64 {
-    format!("1e{exponent}").parse().unwrap_or(1.0)
 }
 
 /// The smallest of 1, 2, 5, 10 times a power of ten that is not below a length.

@@ -18,14 +18,14 @@ pub fn draw(steps: &[RecordedStep]) -> String {
     let zero = Bounds { low: Vec2::zeros(), high: Vec2::zeros() };
     let mut drawing = Drawing::new(Bounds::around(all).unwrap_or(zero));
     for (foot, path) in &paths {
-        drawing.line(path, if *foot == Foot::Left { Ink::LeftStep } else { Ink::RightStep });
+        drawing.line(path, if *foot == Foot::Left { Ink::LEFT_STEP } else { Ink::RIGHT_STEP });
     }
     for (foot, name) in [(Foot::Left, "left"), (Foot::Right, "right")] {
         let own: Vec<&Vec<Vec2>> = paths.iter().filter(|(of, _)| *of == foot).map(|(_, path)| path).collect();
         let mean = |k: usize| own.iter().map(|path| path[k]).sum::<Vec2>() / own.len() as f64;
         if !own.is_empty() {
             let path: Vec<Vec2> = (0..=PIECES as usize).map(mean).collect();
-            drawing.line(&path, Ink::Way);
+            drawing.line(&path, Ink::WAY);
             drawing.text(path[PIECES as usize], &format!("{name} ({})", own.len()));
         }
     }

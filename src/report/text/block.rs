@@ -4,7 +4,7 @@ use super::rows::{MARGIN, line, printed};
 use super::{compare, distribution, rank};
 use crate::engine::at_most;
 use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shortfall, Shows, Stop, Verdict, Witness};
-use crate::report::number::{clock, count, counted, duration, interval, plain};
+use crate::report::number::{clock, count, counted, duration, interval, plain, some};
 use crate::report::palette::{Paint, Palette};
 use crate::report::phrase::{certified, one_line, settings};
 use std::fmt::Write as _;
@@ -73,12 +73,12 @@ pub(in crate::report) fn word(result: &QueryResult) -> (&'static str, Paint) {
 }
 
 fn value(text: &mut String, result: &QueryResult, palette: Palette) {
-    let Some(estimate) = result.estimate else {
+    let Some(value) = result.value() else {
         let sampled = result.consumed.counts.trials > 0;
         line(text, if sampled { "no result" } else { "nothing was sampled" });
         return;
     };
-    let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
+    let (shown, range) = printed(result, &value);
     let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
     let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}: "));
     line(
@@ -174,12 +174,8 @@ pub(in crate::report) fn counts(result: &QueryResult) -> String {
         parts.push(format!("{} {}", count(counts.successes), words[0]));
         parts.push(format!("{} {}", count(counts.failures), words[1]));
     }
-    if counts.unresolved > 0 {
-        parts.push(format!("{} unresolved", count(counts.unresolved)));
-    }
-    if result.consumed.clipped > 0 {
-        parts.push(format!("{} clipped to the range", count(result.consumed.clipped)));
-    }
+    let odd = [(counts.unresolved, "unresolved"), (result.consumed.clipped, "clipped to the range")];
+    parts.extend(odd.iter().filter(|(n, _)| *n > 0).map(|(n, what)| some(*n, what)));
     if !parts.is_empty() {
         text = format!("{text} ({})", parts.join(", "));
     }

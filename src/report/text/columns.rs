@@ -1,6 +1,7 @@
 //! Rows of cells in aligned columns.
 
 use crate::report::palette::{Paint, Palette};
+use std::fmt::Write as _;
 
 /// A cell: a text, how it looks, and to which side it leans.
 pub(in crate::report) struct Cell {
@@ -64,14 +65,21 @@ pub(in crate::report) fn lines(rows: &[Vec<Cell>], palette: Palette) -> Vec<Stri
         .collect()
 }
 
-/// Lines of a table with heads. The first column leans to the left, all others to the right.
-pub(in crate::report) fn table<const N: usize>(heads: [&str; N], rows: Vec<[String; N]>) -> Vec<String> {
+/// Writes a table with heads. The first column leans to the left, all others to the right.
+pub(in crate::report) fn table<const N: usize>(
+    out: &mut String,
+    indent: &str,
+    heads: [&str; N],
+    rows: Vec<[String; N]>,
+) {
     let cells = |row: [String; N]| -> Vec<Cell> {
         let cell = |(k, text): (usize, String)| if k == 0 { Cell::left(text) } else { Cell::right(text) };
         row.into_iter().enumerate().map(cell).collect()
     };
     let rows: Vec<Vec<Cell>> = [heads.map(str::to_owned)].into_iter().chain(rows).map(cells).collect();
-    lines(&rows, Palette::PLAIN)
+    for line in lines(&rows, Palette::PLAIN) {
+        let _ = writeln!(out, "{indent}{line}");
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::columns::Cell;
 use super::rows;
 use crate::engine::outcome::{Comparison, QueryResult, Side};
-use crate::report::number::{count, counted};
+use crate::report::number::{count, counted, some};
 use crate::report::palette::{Paint, Palette};
 
 /// Writes the lines under the head.
@@ -27,7 +27,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, comparison: &Compar
             Cell::left(remark),
         ]
     };
-    let unresolved = |n: u64| if n == 0 { String::new() } else { format!("{} unresolved", count(n)) };
+    let unresolved = |n: u64| some(n, "unresolved");
     let counts = difference.counts;
     let mut pairs = String::new();
     if counts.successes + counts.failures > 0 {
@@ -43,7 +43,5 @@ pub(super) fn write(text: &mut String, result: &QueryResult, comparison: &Compar
         row(difference, Some(Paint::Strong), "pair", pairs),
     ];
     rows::table(text, &rows, palette);
-    if !result.interval.is_empty() {
-        rows::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
-    }
+    rows::intervals(text, result, palette);
 }

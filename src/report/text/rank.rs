@@ -2,8 +2,8 @@
 
 use super::columns::Cell;
 use super::rows;
-use crate::engine::outcome::{QueryResult, Ranking, Status};
-use crate::report::number::counted;
+use crate::engine::outcome::{QueryResult, Ranking};
+use crate::report::number::{counted, some};
 use crate::report::palette::{Paint, Palette};
 
 /// Writes the lines under the head.
@@ -29,28 +29,16 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
         .iter()
         .map(|option| {
             let (estimate, interval) = rows::printed(result, &option.value);
-            let paint = match option.status {
-                Status::Chosen => Paint::Good,
-                Status::Tied => Paint::Neutral,
-                Status::Beaten => Paint::Faint,
-                Status::Open => Paint::Caution,
-            };
-            let unresolved = match option.counts.unresolved {
-                0 => String::new(),
-                n => format!("{n} unresolved"),
-            };
             vec![
                 Cell::left(option.label.clone()),
                 Cell::left(estimate),
                 Cell::left(interval),
                 Cell::right(counted(option.counts.trials, "trial")),
-                Cell::left(option.status.name()).paint(paint),
-                Cell::left(unresolved),
+                Cell::left(option.status.name()).paint(option.status.into()),
+                Cell::left(some(option.counts.unresolved, "unresolved")),
             ]
         })
         .collect();
     rows::table(text, &rows, palette);
-    if !result.interval.is_empty() {
-        rows::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
-    }
+    rows::intervals(text, result, palette);
 }

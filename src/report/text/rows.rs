@@ -2,8 +2,8 @@
 
 use super::columns::{Cell, lines};
 use crate::engine::outcome::{Interval, QueryResult};
-use crate::report::Palette;
 use crate::report::number::{interval, readable};
+use crate::report::palette::{Paint, Palette};
 use std::fmt::Write;
 
 /// Width of the verdict's column, blanks after it included.
@@ -18,6 +18,13 @@ pub(super) fn line(text: &mut String, content: &str) {
 pub(super) fn table(text: &mut String, rows: &[Vec<Cell>], palette: Palette) {
     for row in lines(rows, palette) {
         line(text, &row);
+    }
+}
+
+/// Which intervals a table has.
+pub(super) fn intervals(text: &mut String, result: &QueryResult, palette: Palette) {
+    if !result.interval.is_empty() {
+        line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::columns::Cell;
 use super::{block, rows};
-use crate::engine::outcome::{Interval, QueryResult, Verdict};
-use crate::report::number::{count, counted};
+use crate::engine::outcome::{QueryResult, Verdict};
+use crate::report::number::{counted, some};
 use crate::report::palette::{Paint, Palette};
 use crate::report::phrase::{certified, settings};
 
@@ -23,8 +23,8 @@ pub(super) fn write(text: &mut String, results: &[&QueryResult], palette: Palett
     if same_cause {
         rows::line(text, &format!("each {}", block::cause(first)));
     }
-    if !first.interval.is_empty() && results.iter().all(|r| r.interval == first.interval) {
-        rows::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", first.interval)));
+    if results.iter().all(|r| r.interval == first.interval) {
+        rows::intervals(text, first, palette);
     }
     block::method(text, &common(first, results), palette);
     let statement = certified(first);
@@ -58,17 +58,7 @@ fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
         None if result.verdict.is_none() => ("", Paint::Neutral),
         None => block::word(result),
     };
-    let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
-        rows::printed(result, &Interval { estimate, low: result.low, high: result.high })
-    });
-    let unresolved = match result.consumed.counts.unresolved {
-        0 => String::new(),
-        n => format!("{} unresolved", count(n)),
-    };
-    let clipped = match result.consumed.clipped {
-        0 => String::new(),
-        n => format!("{} clipped to the range", count(n)),
-    };
+    let (estimate, interval) = result.value().map(|value| rows::printed(result, &value)).unwrap_or_default();
     // Of a quantile the figures are those of a probability.
     let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}:"));
     vec![
@@ -78,8 +68,8 @@ fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
         Cell::left(estimate).paint(Paint::Strong),
         Cell::left(interval),
         Cell::right(counted(result.consumed.counts.trials, "trial")),
-        Cell::left(unresolved),
-        Cell::left(clipped),
+        Cell::left(some(result.consumed.counts.unresolved, "unresolved")),
+        Cell::left(some(result.consumed.clipped, "clipped to the range")),
         Cell::left(if same_cause { "" } else { block::cause(result) }),
     ]
 }

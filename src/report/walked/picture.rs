@@ -46,7 +46,7 @@ pub fn draw(scenario: &Scenario, walked: &Walked) -> String {
         drawing.cell(Vec2::new(x as f64, y as f64) * SIDE, SIDE, walks as f64 / most as f64);
     }
     for walk in walks.iter().filter(|walk| walk.len() > 1) {
-        drawing.line(&thinned(walk), Ink::Walk);
+        drawing.line(&thinned(walk), Ink::WALK);
     }
     plan::name_places(&mut drawing, scenario);
     let (all, most) = (count(walks.len() as u64), count(most));

@@ -9,7 +9,7 @@ use super::moments::{Moment, place};
 use super::plan::Plan;
 use crate::base::geometry::{Bounds, Vec2};
 use crate::engine::traces::{Motion, Trace};
-use crate::report::number::{brief, plain};
+use crate::report::number::{brief, exponent, plain, power};
 use std::fmt::Write as _;
 
 /// Cells of a grid.
@@ -139,9 +139,7 @@ pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec
 /// A round width of a shade, such that all shades reach a number.
 fn width(top: f64) -> f64 {
     let least = top / SHADES as f64;
-    let text = format!("{least:e}");
-    let power = text.split_once('e').map_or("1e0".to_owned(), |(_, power)| format!("1e{power}"));
-    let power = power.parse::<f64>().unwrap_or(1.0);
+    let power = power(exponent(least));
     let round = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0].map(|part| part * power);
     // A number such as 1.5 is not exact times a power of ten.
     round.into_iter().find(|width| *width >= least * (1.0 - 1e-9)).unwrap_or(least)

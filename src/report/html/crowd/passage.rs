@@ -1,15 +1,17 @@
 //! Who crossed a line, over time: N(t), its mean and range over the traces, and the flow. A line is crossed as the
 //! language's `crossings(L)` counts it, each person once; the ways between the states of a trace are straight.
 
-use super::figure::{Figure, brief_name};
+use super::figure::Figure;
 use super::moments::place;
 use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
 use crate::model::Line;
-use crate::report::number::{brief, counted, plain};
+use crate::report::number::{brief, counted, plain, thousandths};
 use crate::report::svg::frame::{Frame, part_of_page};
 use crate::report::svg::scale::Scale;
 
+/// Letters of a name.
+const MOST_LETTERS: usize = 60;
 /// Points of a curve.
 const POINTS: u32 = 240;
 
@@ -47,6 +49,12 @@ fn range(numbers: &[f64]) -> [f64; 2] {
     [low, numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
+/// A name as it is shown: very long ones are cut.
+fn brief_name(name: &str) -> String {
+    let start: String = name.chars().take(MOST_LETTERS).collect();
+    if start.len() < name.len() { format!("`{start}…`") } else { format!("`{start}`") }
+}
+
 /// The curve of a line.
 pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
     let times: Vec<Vec<f64>> = traces.iter().map(|trace| crossings(line, &trace.motion)).collect();
@@ -60,7 +68,7 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
         caption += &format!("; flow from the first to the last crossing: {}", spread(&flows, " 1/s"));
         let width = line.segment.length();
         let wide: Vec<f64> = flows.iter().map(|flow| flow / width).collect();
-        caption += &format!(", on {} m: {}.", plain((width * 1e3).round() / 1e3), spread(&wide, " 1/(m s)"));
+        caption += &format!(", on {} m: {}.", plain(thousandths(width)), spread(&wide, " 1/(m s)"));
     }
     if traces.len() > 1 {
         caption += &format!(

@@ -1,8 +1,8 @@
 //! The plan below and above a heat map, in the style of a page: walls, obstacles, lines, and a bar as long as some metres.
 
-use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::engine::traces::Trace;
-use crate::model::{Obstacle, Scene};
+use crate::model::Scene;
 use crate::report::number::plain;
 use std::fmt::Write as _;
 
@@ -34,10 +34,7 @@ impl Plan {
         let points = tracks.flat_map(|track| &track.points);
         let places = points.map(|[x, y]| Vec2::new(f64::from(*x), f64::from(*y)) / 1000.0);
         let walked = Bounds::around(places)?;
-        let barriers = scene.barriers.iter().filter_map(|barrier| match &barrier.obstacle {
-            Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
-            Obstacle::Solid(shape) => Some(shape.bounds()),
-        });
+        let barriers = scene.barriers.iter().filter_map(|barrier| barrier.obstacle.bounds());
         let lines = scene.lines.iter().filter_map(|line| Bounds::around([line.segment.a, line.segment.b]));
         let corners = barriers.chain(lines).chain([walked]).flat_map(|bounds| [bounds.low, bounds.high]);
         let inner = Bounds::around(corners)?;
@@ -82,25 +79,22 @@ impl Plan {
     }
 
     fn drawn(&self, scene: &Scene) -> String {
-        let (mut walls, mut solids, mut lines) = (String::new(), String::new(), String::new());
-        for barrier in &scene.barriers {
-            match &barrier.obstacle {
-                Obstacle::Wall(segments) => {
-                    walls.extend(segments.iter().map(|segment| self.path(&[segment.a, segment.b])));
-                }
-                Obstacle::Solid(Shape::Circle { centre, radius }) => {
-                    let radius = radius * self.scale;
-                    let start = self.at(Vec2::new(centre.x - radius / self.scale, centre.y));
-                    let arc = |dx: f64| format!("a{radius:.1} {radius:.1} 0 1 0 {dx:.1} 0");
-                    solids += &format!("M{start}{}{}Z", arc(2.0 * radius), arc(-2.0 * radius));
-                }
-                Obstacle::Solid(Shape::Polygon(polygon)) => {
-                    let rings = std::iter::once(&polygon.outline).chain(&polygon.holes);
-                    solids.extend(rings.map(|ring| self.path(ring) + "Z"));
-                }
+        let line = |line: &Segment| self.path(&[line.a, line.b]);
+        let solid = |shape: &Shape| match shape {
+            Shape::Circle { centre, radius } => {
+                let radius = radius * self.scale;
+                let start = self.at(Vec2::new(centre.x - radius / self.scale, centre.y));
+                let arc = |dx: f64| format!("a{radius:.1} {radius:.1} 0 1 0 {dx:.1} 0");
+                format!("M{start}{}{}Z", arc(2.0 * radius), arc(-2.0 * radius))
             }
-        }
-        lines.extend(scene.lines.iter().map(|line| self.path(&[line.segment.a, line.segment.b])));
+            Shape::Polygon(polygon) => {
+                let rings = std::iter::once(&polygon.outline).chain(&polygon.holes);
+                rings.map(|ring| self.path(ring) + "Z").collect()
+            }
+        };
+        let walls: String = scene.walls().map(line).collect();
+        let solids: String = scene.solids().map(solid).collect();
+        let lines: String = scene.lines.iter().map(|one| line(&one.segment)).collect();
         let mut drawn = String::new();
         // A rim below the walls sets them apart from dark cells.
         for (class, path) in

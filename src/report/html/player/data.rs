@@ -2,7 +2,7 @@
 
 use super::scene::Scene;
 use crate::engine::outcome::CallResult;
-use crate::engine::traces::{Millimetres, Shown, Trace};
+use crate::engine::traces::{Bar, PlannedWay, Shown, Trace, Track};
 use crate::report::number::count;
 use crate::report::phrase::{one_line, settings};
 use crate::report::text;
@@ -11,48 +11,29 @@ use std::sync::Arc;
 
 /// All that the player shows.
 #[derive(Debug, Serialize)]
-pub(super) struct Data {
+pub(super) struct Data<'t> {
     scenes: Vec<Scene>,
-    traces: Vec<Motion>,
-    pub(super) entries: Vec<Entry>,
+    traces: Vec<Motion<'t>>,
+    pub(super) entries: Vec<Entry<'t>>,
 }
 
 /// The agents of a trace.
 #[derive(Debug, Serialize)]
-struct Motion {
+struct Motion<'t> {
     scene: usize,
     trial: u64,
     spacing: f64,
     frames: usize,
     end: f64,
-    tracks: Vec<Track>,
-    plans: Vec<Plan>,
+    tracks: &'t [Track],
+    plans: &'t [PlannedWay],
     /// Groups that change: the first frame, the agent, the group.
     memberships: Vec<(usize, usize, Option<u64>)>,
 }
 
-#[derive(Debug, Serialize)]
-struct Track {
-    agent: usize,
-    name: String,
-    radius: i32,
-    first: usize,
-    /// The first place, then the differences, mm.
-    x: Vec<i32>,
-    y: Vec<i32>,
-}
-
-#[derive(Debug, Serialize)]
-struct Plan {
-    agent: usize,
-    first: usize,
-    x: Vec<i32>,
-    y: Vec<i32>,
-}
-
 /// What can be chosen: a trace as one of a result.
 #[derive(Debug, Serialize)]
-pub(super) struct Entry {
+pub(super) struct Entry<'t> {
     trace: usize,
     /// Of which result it is; it is listed with the others of it.
     #[serde(skip)]
@@ -70,28 +51,12 @@ pub(super) struct Entry {
     what: String,
     agents: Vec<String>,
     command: String,
-    bars: Vec<Bar>,
+    bars: &'t [Bar],
 }
 
-#[derive(Debug, Serialize)]
-struct Bar {
-    text: String,
-    changes: Vec<f64>,
-}
-
-fn differences(points: &[Millimetres], axis: usize) -> Vec<i32> {
-    let mut last = 0;
-    let step = |point: &Millimetres| {
-        let change = point[axis] - last;
-        last = point[axis];
-        change
-    };
-    points.iter().map(step).collect()
-}
-
-impl Data {
+impl<'t> Data<'t> {
     /// The data of some traces of a run.
-    pub(super) fn of(run: &CallResult, traces: &[Trace]) -> Self {
+    pub(super) fn of(run: &CallResult, traces: &'t [Trace]) -> Self {
         let mut known: Vec<&Arc<crate::model::Scenario>> = Vec::new();
         let mut data = Self { scenes: Vec::new(), traces: Vec::new(), entries: Vec::new() };
         for (number, trace) in traces.iter().enumerate() {
@@ -112,36 +77,22 @@ impl Data {
     }
 }
 
-fn motion(scene: usize, trace: &Trace) -> Motion {
+fn motion(scene: usize, trace: &Trace) -> Motion<'_> {
     let motion = &trace.motion;
-    let track = |track: &crate::engine::traces::Track| Track {
-        agent: track.agent,
-        name: track.name.clone(),
-        radius: track.radius,
-        first: track.first,
-        x: differences(&track.points, 0),
-        y: differences(&track.points, 1),
-    };
-    let plan = |plan: &crate::engine::traces::PlannedWay| Plan {
-        agent: plan.agent,
-        first: plan.first,
-        x: differences(&plan.points, 0),
-        y: differences(&plan.points, 1),
-    };
     Motion {
         scene,
         trial: trace.trial,
         spacing: motion.spacing,
         frames: motion.frames,
         end: trace.end,
-        tracks: motion.tracks.iter().map(track).collect(),
-        plans: motion.plans.iter().map(plan).collect(),
+        tracks: &motion.tracks,
+        plans: &motion.plans,
         memberships: motion.memberships.iter().map(|one| (one.first, one.agent, one.group)).collect(),
     }
 }
 
 /// A trial that belongs to no result.
-fn bare(number: usize, trace: &Trace) -> Entry {
+fn bare(number: usize, trace: &Trace) -> Entry<'_> {
     Entry {
         trace: number,
         result: None,
@@ -154,7 +105,7 @@ fn bare(number: usize, trace: &Trace) -> Entry {
         what: String::new(),
         agents: Vec::new(),
         command: String::new(),
-        bars: Vec::new(),
+        bars: &[],
     }
 }
 
@@ -167,7 +118,7 @@ fn named(trace: &Trace) -> String {
     format!("trial {}{option}", count(trace.trial))
 }
 
-fn entry(run: &CallResult, number: usize, trace: &Trace, shown: &Shown) -> Entry {
+fn entry<'t>(run: &CallResult, number: usize, trace: &'t Trace, shown: &'t Shown) -> Entry<'t> {
     let result = &run.results[shown.result];
     let with = settings(result);
     let group = if with.is_empty() { String::new() } else { format!(" ({with})") };
@@ -181,7 +132,6 @@ fn entry(run: &CallResult, number: usize, trace: &Trace, shown: &Shown) -> Entry
     };
     let name = if shown.label.is_empty() { named(trace) } else { format!("trial {}", count(trace.trial)) };
     let witness = shown.witness.as_ref();
-    let bar = |bar: &crate::engine::traces::Bar| Bar { text: bar.text.clone(), changes: bar.changes.clone() };
     Entry {
         trace: number,
         result: Some(shown.result),
@@ -194,6 +144,6 @@ fn entry(run: &CallResult, number: usize, trace: &Trace, shown: &Shown) -> Entry
         what: witness.map_or(String::new(), |one| one.what.clone()),
         agents: witness.map_or_else(Vec::new, |one| one.agents.clone()),
         command: witness.map_or(String::new(), |one| one.command.clone()),
-        bars: shown.bars.iter().map(bar).collect(),
+        bars: &shown.bars,
     }
 }

@@ -1,8 +1,8 @@
 //! What stands still in a scene, in whole millimetres.
 
-use crate::base::geometry::{Shape, Vec2};
+use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::base::tick::Clock;
-use crate::model::{Obstacle, Scenario};
+use crate::model::Scenario;
 use serde::Serialize;
 
 /// A scene and what the names of its agents are grouped by.
@@ -70,23 +70,17 @@ fn outline(shape: &Shape) -> Outline {
 
 impl Scene {
     pub(super) fn of(scenario: &Scenario) -> Self {
-        let (mut walls, mut solids) = (Vec::new(), Vec::new());
-        for barrier in &scenario.scene.barriers {
-            match &barrier.obstacle {
-                Obstacle::Wall(segments) => walls.extend(segments.iter().map(|segment| {
-                    let ([a, b], [c, d]) = (place(segment.a), place(segment.b));
-                    [a, b, c, d]
-                })),
-                Obstacle::Solid(shape) => solids.push(outline(shape)),
-            }
-        }
+        let wall = |wall: &Segment| {
+            let ([a, b], [c, d]) = (place(wall.a), place(wall.b));
+            [a, b, c, d]
+        };
         let regions = scenario.scene.regions.iter();
         let points = scenario.scene.points.iter();
         let groups = scenario.groups.iter();
         Self {
             unit: if scenario.clock == Clock::Steps { "steps" } else { "s" },
-            walls,
-            solids,
+            walls: scenario.scene.walls().map(wall).collect(),
+            solids: scenario.scene.solids().map(outline).collect(),
             regions: regions
                 .map(|one| Named { name: one.name.clone(), shape: outline(&one.shape) })
                 .collect(),
