@@ -7,6 +7,7 @@
 //! machine.
 
 use super::math;
+use std::convert::Infallible;
 
 /// Name of the generator, for reports.
 pub const GENERATOR: &str = "philox4x32-10";
@@ -174,6 +175,46 @@ pub const fn name_hash(name: &str) -> u64 {
     }
     // FNV mixes its low bits best; fold the high half in once more.
     hash ^ hash >> 29
+}
+
+/// A stream read in order, for code that takes any generator of the `rand` crates.
+#[derive(Clone, Copy, Debug)]
+pub struct Sequence {
+    stream: Stream,
+    next: u64,
+}
+
+impl Sequence {
+    /// Starts at the first word of `stream`.
+    pub const fn new(stream: Stream) -> Self {
+        Self { stream, next: 0 }
+    }
+
+    fn word(&mut self) -> u64 {
+        let word = self.stream.words((self.next / 2) as u32)[(self.next % 2) as usize];
+        self.next += 1;
+        word
+    }
+}
+
+impl rand::rand_core::TryRng for Sequence {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        Ok(self.word() as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        Ok(self.word())
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        for chunk in bytes.chunks_mut(8) {
+            let word = self.word().to_le_bytes();
+            chunk.copy_from_slice(&word[..chunk.len()]);
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

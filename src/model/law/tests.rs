@@ -1,50 +1,9 @@
 //! Laws against statrs, `rand_distr` and sums over a fine grid of uniform numbers.
 
 use super::*;
-use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::random::{Purpose, Sequence, Stream, TrialKey};
 use rand_distr::Distribution;
 use statrs::distribution::{ContinuousCDF, DiscreteCDF};
-use std::convert::Infallible;
-
-/// A stream read in order, for code that takes any generator of the `rand` crates.
-#[derive(Clone, Copy, Debug)]
-struct Sequence {
-    stream: Stream,
-    next: u64,
-}
-
-impl Sequence {
-    /// Starts at the first word of `stream`.
-    const fn new(stream: Stream) -> Self {
-        Self { stream, next: 0 }
-    }
-
-    fn word(&mut self) -> u64 {
-        let word = self.stream.words((self.next / 2) as u32)[(self.next % 2) as usize];
-        self.next += 1;
-        word
-    }
-}
-
-impl rand::rand_core::TryRng for Sequence {
-    type Error = Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
-        Ok(self.word() as u32)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        Ok(self.word())
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        for chunk in bytes.chunks_mut(8) {
-            let word = self.word().to_le_bytes();
-            chunk.copy_from_slice(&word[..chunk.len()]);
-        }
-        Ok(())
-    }
-}
 
 fn free(family: Family) -> Law {
     Law::Random { family, low: f64::NEG_INFINITY, high: f64::INFINITY }
