@@ -56,11 +56,11 @@ fn the_social_force_takes_a_kind_and_a_scene() {
     let schema = jsonschema::validator_for(&schema).unwrap();
     let (square, force) = (["infer", "models/square.csv"], ["--motion", "social-force"]);
     for (words, kind, scene) in [
-        (&[] as &[&str], "helbing2000", Value::Null),
-        (&["--kind", "smc1"], "smc1", Value::Null),
-        (&["--scene", "models/square.scn"], "helbing2000", "models/square.scn".into()),
+        (&[] as &[&str], "smc1", Value::Null),
+        (&["--kind", "helbing2000"], "helbing2000", Value::Null),
+        (&["--scene", "models/square.scn"], "smc1", "models/square.scn".into()),
         (&["--scene", "models/square.scn", "--kind", "adult"], "adult", "models/square.scn".into()),
-        (&["--scene", "models/square.scn", "--data", "models"], "helbing2000", "models/square.scn".into()),
+        (&["--scene", "models/square.scn", "--data", "models"], "smc1", "models/square.scn".into()),
     ] {
         let said = at_root(&[&square[..], &force, words].concat());
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{words:?}");
