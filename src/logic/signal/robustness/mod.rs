@@ -117,11 +117,6 @@ impl SignalRobustness {
         self.bounds
     }
 
-    /// The bounds of the robustness.
-    pub fn bounds(&self) -> Bounds {
-        self.bounds
-    }
-
     /// Of one that looks [closely](Self::closely): the least that the robustness could be by what was seen up to and
     /// right after the beginning of the state judged last.
     pub fn at_start(&self) -> f64 {
