@@ -2,6 +2,9 @@
 
 use std::borrow::Cow;
 
+/// Most digits of a number in a message: more than any double needs that is near 1.
+const DIGITS: usize = 24;
+
 /// Whether a character is obeyed by a terminal or not seen: controls but the line end and the tab, marks of direction,
 /// characters without width, line separators, tags (Unicode categories Cc, Cf, Zl and Zp).
 const fn is_hidden(c: char) -> bool {
@@ -49,9 +52,42 @@ pub fn same_length(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(shown).collect())
 }
 
+/// A text in which numbers of more than [`DIGITS`] digits are written with an exponent: `1e300`.
+pub fn shortened(text: String) -> String {
+    let is_digit = |c: char| c.is_ascii_digit() || c == '.';
+    let mut shown = String::with_capacity(text.len());
+    for part in text.split_inclusive(|c| !is_digit(c)) {
+        let number = part.trim_end_matches(|c: char| !c.is_ascii_digit());
+        let is_alone = !shown.ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        match number.parse::<f64>() {
+            Ok(value) if number.len() > DIGITS && value.is_finite() && is_alone => {
+                shown.push_str(&format!("{value:e}"));
+                shown.push_str(&part[number.len()..]);
+            }
+            _ => shown.push_str(part),
+        }
+    }
+    shown
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_many_digits_are_written_with_an_exponent() {
+        for (value, shown) in
+            [(1e300, "1e300"), (5e-324, "5e-324"), (-1e30, "-1e30"), (1e15, "1000000000000000")]
+        {
+            assert_eq!(
+                shortened(format!("got {value} s, é {value}.")),
+                format!("got {shown} s, é {shown}."),
+                "{value}"
+            );
+        }
+        let name = format!("`a{}` has 0.30000000000000004 m", "1".repeat(40));
+        assert_eq!(shortened(name.clone()), name);
+    }
 
     #[test]
     fn what_a_terminal_obeys_and_what_nobody_sees_is_escaped() {

@@ -2,6 +2,7 @@
 
 use super::codes::Code;
 use super::source::Span;
+use crate::base::visible::shortened;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,7 +61,7 @@ impl Diagnostic {
         Self {
             severity: Severity::Error,
             code,
-            title: title.into(),
+            title: shortened(title.into()),
             place: None,
             related: Vec::new(),
             hint: None,
@@ -88,7 +89,7 @@ impl Diagnostic {
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
         if let Some(place) = &mut self.place {
-            place.text = text.into();
+            place.text = shortened(text.into());
         }
         self
     }
@@ -96,14 +97,14 @@ impl Diagnostic {
     /// Marks a further place.
     #[must_use]
     pub fn related(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.related.push(Label { span, text: text.into() });
+        self.related.push(Label { span, text: shortened(text.into()) });
         self
     }
 
     /// Says what to do.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
+        self.hint = Some(shortened(hint.into()));
         self
     }
 }

@@ -1,6 +1,7 @@
 //! A fault in one line of a text table, and the fields of such a line.
 
 use crate::base::geometry::Vec2;
+use crate::base::visible::{shortened, visible};
 
 /// An error of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -17,7 +18,7 @@ pub struct LineError {
 impl LineError {
     /// A fault of a whole line.
     pub fn whole(line: usize, message: impl Into<String>) -> Self {
-        Self { line, column: None, message: message.into() }
+        Self { line, column: None, message: shortened(message.into()) }
     }
 
     /// A fault that no line has alone.
@@ -27,7 +28,7 @@ impl LineError {
 
     /// A fault at a character of a line.
     pub fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
-        Self { line, column: Some(column), message: message.into() }
+        Self { line, column: Some(column), message: shortened(message.into()) }
     }
 
     fn sentence(&self) -> String {
@@ -114,13 +115,44 @@ pub(super) fn json_velocity(what: &str, x: Option<f64>, y: Option<f64>) -> Resul
     Ok(x.zip(y).map(|(x, y)| Vec2::new(x, y)))
 }
 
-/// An error of JSON in one line, at its character.
+/// An error of JSON in one line, at its character: which member is wrong, and how it must be.
 pub(super) fn json_fault(number: usize, line: &str, error: &serde_json::Error) -> LineError {
     let said = error.to_string();
     // The place is said by the error of the line.
-    let message = said.split(" at line ").next().unwrap_or(&said);
+    let said = said.split(" at line ").next().unwrap_or(&said);
     let before = line.as_bytes().get(..error.column().saturating_sub(1)).unwrap_or(line.as_bytes());
-    LineError::at(number, String::from_utf8_lossy(before).chars().count() + 1, message)
+    let before = String::from_utf8_lossy(before);
+    let cut = |text: &str| text.chars().take(60).collect::<String>();
+    let message = match said.split_once(", expected ") {
+        Some((found, wanted)) => {
+            let quoted = before.rsplit_once("\":").and_then(|(start, _)| start.rsplit_once('"'));
+            let subject = match quoted {
+                Some((_, name)) if !wanted.starts_with("struct Line") => format!("`{}`", visible(name)),
+                _ => "a line".to_owned(),
+            };
+            let found = found.split_once(": ").map(|(_, found)| format!(" (got {})", cut(found)));
+            format!("{subject} must be {}{}", in_words(wanted), found.unwrap_or_default())
+        }
+        None if said.starts_with("expected") || error.is_eof() => {
+            format!("the line is not JSON: {}", said.replace("ident", "value"))
+        }
+        None => said.to_owned(),
+    };
+    LineError::at(number, before.chars().count() + 1, message)
+}
+
+/// The form of a member, by the type that was expected.
+fn in_words(wanted: &str) -> &str {
+    match wanted {
+        "u32" => "a whole number from 0 to 4294967295",
+        "f64" => "a number",
+        "a string" => "a text",
+        "a sequence" => "a list",
+        "an array of length 2" => "a list of corners [x, y]",
+        _ if wanted.starts_with("struct Seen") => "a list of JSON objects",
+        _ if wanted.starts_with("struct") => "a JSON object",
+        other => other,
+    }
 }
 
 #[cfg(test)]

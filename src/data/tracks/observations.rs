@@ -11,6 +11,9 @@ use crate::base::geometry::{Vec2, coordinate_fault};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
+/// A line for messages.
+const EXAMPLE: &str = r#"{"t":0.4,"seen":[{"x":2.1,"y":-3,"id":7}]}"#;
+
 #[derive(Deserialize)]
 struct Line {
     t: f64,
@@ -34,7 +37,12 @@ struct Seen {
 /// The first error, with `line` 1: not such an object, a coordinate too far from the origin, `vx` without `vy`, an id
 /// twice, and a field with fewer than three corners.
 pub fn read_batch(line: &str) -> Result<Batch, LineError> {
-    let read: Line = serde_json::from_str(line).map_err(|error| json_fault(1, line, &error))?;
+    // A mark of the encoding may stand before the first line.
+    let line = line.strip_prefix('\u{feff}').unwrap_or(line);
+    let read: Line = serde_json::from_str(line).map_err(|error| {
+        let fault = json_fault(1, line, &error);
+        LineError { message: format!("{}; write for example {EXAMPLE}", fault.message), ..fault }
+    })?;
     let wrong = |message: String| LineError::whole(1, message);
     let refuse = |message: String| Err(wrong(message));
     let mut seen = Vec::with_capacity(read.seen.len());
