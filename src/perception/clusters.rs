@@ -3,8 +3,10 @@
 //!
 //! The space is (x/2, y/2, vx · 1 s, vy · 1 s). For each k, the best of ten starts counts: first centroids by k-means++
 //! (Arthur and Vassilvitskii 2007), then Lloyd's iterations. Points that lie pairwise farther than twice the threshold
-//! apart need clusters of their own, so k begins at their number.
+//! apart need clusters of their own, so k begins at their number. People whom no chain of such near points connects are
+//! looked at apart.
 
+use super::near;
 use crate::base::geometry::Vec2;
 use crate::base::random::{Purpose, Stream, TrialKey};
 
@@ -12,6 +14,8 @@ use crate::base::random::{Purpose, Stream, TrialKey};
 const STARTS: u32 = 10;
 /// Points of a block of partial sums.
 const BLOCK: usize = 16;
+/// Most people who are looked at together.
+const MOST_TOGETHER: usize = 128;
 /// Most iterations of a start. Lloyd's method ends by itself, usually after a few.
 const ITERATIONS: usize = 100;
 
@@ -39,29 +43,49 @@ pub fn instant_of(time: f64) -> u32 {
 }
 
 /// The clusters of people at positions, m, with velocities, m/s; one without a velocity stands. Each cluster has its
-/// members ascending, and clusters are in the order of their first members.
+/// members ascending, and clusters are in the order of their first members. People of whom time leaves none to look at
+/// are alone.
 pub fn clusters(
     people: &[(Vec2, Option<Vec2>)],
     options: &Clustering,
     key: TrialKey,
     instant: u32,
+    is_over: &dyn Fn() -> bool,
 ) -> Vec<Vec<usize>> {
     let points = Points::of(people, options);
-    let n = people.len();
-    if n == 0 {
-        return Vec::new();
-    }
     let stream = Stream::of(key, instant, Purpose::Group);
-    let limit = options.threshold * options.threshold;
+    let mut found = Vec::new();
+    for piece in points.pieces(options.threshold) {
+        if is_over() {
+            found.extend(piece.into_iter().map(|i| vec![i]));
+            continue;
+        }
+        let first_draw = |start: u32| start.wrapping_mul(people.len() as u32).wrapping_add(piece[0] as u32);
+        let clusters = few_clusters(&points.of_some(&piece), options.threshold, stream, first_draw);
+        found.extend(clusters.into_iter().map(|cluster| cluster.into_iter().map(|i| piece[i]).collect()));
+    }
+    found.sort_by_key(|cluster: &Vec<usize>| cluster[0]);
+    found
+}
+
+/// The least number of clusters of some points; the number of a start gives its first draw.
+fn few_clusters(
+    points: &Points,
+    threshold: f64,
+    stream: Stream,
+    first_draw: impl Fn(u32) -> u32,
+) -> Vec<Vec<usize>> {
+    let n = points.1.len();
+    let limit = threshold * threshold;
     let mut starts: Vec<Work> = (0..STARTS).map(|_| Work::new(n)).collect();
     let (mut work, mut best) = (Work::new(n), Work::new(n));
-    for k in points.least_clusters(options.threshold)..n {
+    for k in points.least_clusters(threshold)..n {
         let mut least = f64::INFINITY;
         for (start, seeded) in (0..STARTS).zip(&mut starts) {
             // The first centroids of a start are those that it had for fewer clusters, and one more.
-            seeded.seed(&points, k, stream, start.wrapping_mul(n as u32));
+            seeded.seed(points, k, stream, first_draw(start));
             work.clone_from(seeded);
-            work.settle(&points);
+            work.settle(points);
             let sum: f64 = work.nearest.iter().sum();
             if sum < least {
                 least = sum;
@@ -98,6 +122,41 @@ impl Points {
         let axes: [Vec<f64>; 4] = [place(|p| p.x), place(|p| p.y), speed(|v| v.x), speed(|v| v.y)];
         let points = (0..people.len()).map(|i| std::array::from_fn(|c| axes[c][i])).collect();
         Self(axes, points)
+    }
+
+    fn of_some(&self, members: &[usize]) -> Self {
+        let axes = std::array::from_fn(|c| members.iter().map(|i| self.0[c][*i]).collect());
+        Self(axes, members.iter().map(|i| self.1[*i]).collect())
+    }
+
+    /// Sets of points such that no cluster has members in two of them, each ascending. Those with too many points are cut
+    /// in two, so the time grows with the number of people and not with its cube.
+    fn pieces(&self, threshold: f64) -> Vec<Vec<usize>> {
+        // Both are near the centroid. A little more, because of rounding.
+        let reach = 2.0 * threshold * (1.0 + 1e-9);
+        let places: Vec<Vec2> = self.1.iter().map(|point| Vec2::new(point[0], point[1])).collect();
+        let near = near::pairs(&places, &places, reach).into_iter();
+        let linked = near.filter(|(i, j)| self.squared(*i, &self.1[*j]) <= reach * reach);
+        let mut open = near::connected(places.len(), linked);
+        let mut pieces = Vec::new();
+        while let Some(mut piece) = open.pop() {
+            if piece.len() <= MOST_TOGETHER {
+                piece.sort_unstable();
+                pieces.push(piece);
+                continue;
+            }
+            // Cut across the longer side.
+            let [(width, along_x), (height, along_y)] = [0, 1].map(|c| {
+                let axis = &self.0[c];
+                let mut order = piece.clone();
+                order.sort_by(|i, j| axis[*i].total_cmp(&axis[*j]));
+                (axis[order[order.len() - 1]] - axis[order[0]], order)
+            });
+            let mut half = if width > height { along_x } else { along_y };
+            open.push(half.split_off(half.len() / 2));
+            open.push(half);
+        }
+        pieces
     }
 
     fn at(&self, i: usize) -> [f64; 4] {
@@ -277,7 +336,7 @@ mod tests {
     }
 
     fn found(people: &[(Vec2, Option<Vec2>)]) -> Vec<Vec<usize>> {
-        clusters(people, &Clustering::default(), TrialKey::default(), 0)
+        clusters(people, &Clustering::default(), TrialKey::default(), 0, &|| false)
     }
 
     #[test]
@@ -363,25 +422,28 @@ mod tests {
         assert!(made as f64 <= 1.1 * few as f64, "{made} clusters where {few} serve");
     }
 
+    /// The cost of a crowd is that of its pieces, whose size is bounded.
     #[test]
-    #[allow(clippy::disallowed_methods, clippy::print_stdout, reason = "this test measures the time")]
-    fn two_hundred_people_are_fast() {
-        let stream = Stream::of(TrialKey::default(), 0, Purpose::Test);
-        let people: Vec<_> = (0..100)
-            .flat_map(|i| {
-                let [x, y] = stream.uniform_pair(2 * i);
-                let [u, v] = stream.uniform_pair(2 * i + 1);
-                let (x, y, u, v) = (20.0 * x, 20.0 * y, 3.0 * u - 1.5, 3.0 * v - 1.5);
-                [person(x, y, u, v), person(x + 0.7, y, u + 0.1, v)]
-            })
-            .collect();
-        let best = (0..5)
-            .map(|_| {
-                let start = std::time::Instant::now();
-                let groups = found(&people).len();
-                (start.elapsed(), groups)
-            })
-            .min();
-        println!("clusters of 200 people: {best:?}");
+    fn a_larger_crowd_has_more_pieces_and_not_larger_ones() {
+        for (apart, most) in [(0.4, 512 * 512 * 10), (4.1, 1)] {
+            let crowd: Vec<_> = (0..2500_u32)
+                .map(|i| person(apart * f64::from(i % 50), apart * f64::from(i / 50), 1.0, 0.0))
+                .collect();
+            let points = Points::of(&crowd, &Clustering::default());
+            let pieces = points.pieces(0.5);
+            assert_eq!(pieces.iter().map(Vec::len).sum::<usize>(), 2500);
+            let largest = pieces.iter().map(|piece| piece.len()).max().unwrap();
+            assert!(largest <= MOST_TOGETHER.min(most), "{largest}");
+        }
+        let late = clusters(
+            &[person(0.0, 0.0, 1.0, 0.0); 5],
+            &Clustering::default(),
+            TrialKey::default(),
+            0,
+            &|| true,
+        );
+        assert_eq!(late.len(), 5);
+        let twice = found(&[person(0.0, 0.0, 1.0, 0.0); 600]);
+        assert_eq!(twice.iter().map(Vec::len).sum::<usize>(), 600);
     }
 }

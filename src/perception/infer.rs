@@ -115,7 +115,7 @@ pub fn infer(
         times.push(time);
         let placed: Vec<(Vec2, Option<Vec2>)> =
             seen.iter().map(|(_, end)| (end.position, end.velocity)).collect();
-        let found = clusters(&placed, &options.clustering, options.key, instant_of(time));
+        let found = clusters(&placed, &options.clustering, options.key, instant_of(time), &|| false);
         let members: Vec<Vec<u64>> =
             found.iter().map(|cluster| cluster.iter().map(|k| seen[*k].0).collect()).collect();
         let groups = lineage.step(time, &members);

@@ -4,7 +4,7 @@
 //! cluster too; ties go to the larger, then to the lower number. Other clusters are new groups. A group that was joined
 //! to another for a single instant gets its number back, as does one whose members were unseen for a while.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A group and its members, by the numbers of their traces, ascending.
 type Members = (u64, Vec<u64>);
@@ -43,7 +43,7 @@ impl Lineage {
         for (cluster, number) in mutual(clusters, &all, &self.current) {
             numbers[cluster] = number;
         }
-        self.ended.retain(|ended| !ended.is_unseen || time - ended.last <= self.longest);
+        self.ended.retain(|ended| !ended.is_unseen || (time - ended.last).abs() <= self.longest);
         let open: Vec<usize> = all.into_iter().filter(|k| numbers[*k] == 0).collect();
         let revived: Vec<Members> = self.ended.iter().map(|ended| ended.group.clone()).collect();
         for (cluster, number) in mutual(clusters, &open, &revived) {
@@ -55,10 +55,10 @@ impl Lineage {
         }
         let before = std::mem::take(&mut self.current);
         let last = self.time;
+        let seen: BTreeSet<u64> = clusters.iter().flatten().copied().collect();
         self.ended.retain(|ended| ended.is_unseen && !numbers.contains(&ended.group.0));
         for group in before.into_iter().filter(|group| !numbers.contains(&group.0)) {
-            let is_unseen =
-                group.1.iter().all(|member| clusters.iter().all(|cluster| !cluster.contains(member)));
+            let is_unseen = group.1.iter().all(|member| !seen.contains(member));
             self.ended.push(Ended { group, last, is_unseen });
         }
         self.current = numbers.iter().copied().zip(clusters.iter().cloned()).collect();

@@ -14,6 +14,7 @@ pub mod intervals;
 pub mod lineage;
 pub mod lives;
 pub mod motion;
+mod near;
 pub mod score;
 pub mod social_force;
 pub mod trace;

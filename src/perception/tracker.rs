@@ -1,11 +1,13 @@
 //! Inference of traces from observations (Given-Wilson, Legay, Sedwards, Zendra, "Modelling of Machine-Aided Human
 //! Group Motion", 2017, Algorithm 2), one time after the other.
 
-use super::assignment::Costs;
+use super::assignment::{Costs, assign_some};
 use super::distance::distance;
 use super::fusion::{Fused, fuse};
 use super::motion::Motion;
+use super::near;
 use super::trace::{Trace, TracePoint};
+use crate::base::geometry::Vec2;
 use crate::data::tracks::Batch;
 use std::collections::BTreeMap;
 
@@ -105,8 +107,19 @@ impl Tracker {
         std::mem::take(&mut self.ended)
     }
 
+    /// Ends all traces: the next batches may be at any time.
+    pub fn restart(&mut self) {
+        self.ended.append(&mut self.active);
+        self.last = None;
+    }
+
+    /// The time of the last step, s.
+    pub const fn last(&self) -> Option<f64> {
+        self.last
+    }
+
     /// Continues the traces with all batches of one time; returns the number of the trace of each observation, for each
-    /// batch. An empty list of batches changes nothing; a batch in which nobody is seen lets time pass.
+    /// batch; two observations of one batch at one place are one person. An empty list of batches changes nothing; a batch in which nobody is seen lets time pass.
     ///
     /// # Errors
     /// Batches that are not later than the last step, or of different times; they are not used.
@@ -163,7 +176,7 @@ impl Tracker {
         before: f64,
     ) -> Vec<(usize, usize)> {
         let Tracking { threshold, discount, padding, waiting, .. } = self.options;
-        let apart = Costs::of(open.len(), free.len(), |i, j| {
+        let apart = |i: usize, j: usize| {
             let (one, point) = (&people[open[i]].mean, &projected[free[j]]);
             if one.id.is_some() && self.active[free[j]].person.is_some() {
                 return NEVER;
@@ -172,17 +185,22 @@ impl Tracker {
             let waited = if padding == Padding::Gated { waited } else { 0.0 };
             waiting * waited
                 + distance((one.position, one.velocity), (point.position, point.velocity), discount)
-        });
+        };
         // The smaller side is assigned as a whole, and dummy entries of equal cost do not move the least sum. A pair
         // that costs the threshold is then as good as leaving both unmatched.
         let pairs = match padding {
-            Padding::Printed => apart.assign(),
+            Padding::Printed => Costs::of(open.len(), free.len(), apart).assign(),
             Padding::Gated => {
-                Costs::of(open.len(), free.len(), |i, j| apart.at(i, j).min(threshold)).assign()
+                let seen: Vec<Vec2> = open.iter().map(|i| people[*i].mean.position).collect();
+                let expected: Vec<Vec2> = free.iter().map(|k| projected[*k].position).collect();
+                let near = near::pairs(&seen, &expected, threshold).into_iter();
+                let possible: Vec<_> =
+                    near.map(|(i, j)| (i, j, apart(i, j))).filter(|pair| pair.2 <= threshold).collect();
+                assign_some(open.len(), free.len(), &possible, threshold)
             }
         };
         let near = |(i, j): (usize, Option<usize>)| {
-            j.filter(|j| apart.at(i, *j) <= threshold).map(|j| (open[i], free[j]))
+            j.filter(|j| apart(i, *j) <= threshold).map(|j| (open[i], free[j]))
         };
         pairs.into_iter().enumerate().filter_map(near).collect()
     }
@@ -214,7 +232,6 @@ impl Tracker {
 mod tests {
     use super::super::motion::ConstantVelocity;
     use super::*;
-    use crate::base::geometry::Vec2;
     use crate::data::tracks::Observation;
 
     fn step(tracker: &mut Tracker, time: f64, seen: &[(f64, Option<u32>)]) -> Vec<u64> {
