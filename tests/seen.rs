@@ -180,3 +180,37 @@ fn what_cannot_be_meant_is_refused() {
         Draft::new("a.scn", format).file("here.csv", TABLE).parse().expect_err("a format").to_string();
     assert!(found.contains("did you mean `trajnet`"), "{found}");
 }
+
+/// The nearest rim is in one direction, so both are moved to the same point.
+#[test]
+fn people_who_are_moved_to_one_point_start_side_by_side() {
+    let start = |scene: &str, table: &str| {
+        let source = format!("scene {{ {scene} }}\n{}", text("", "agents all: adult from here at 0 s"));
+        let model = Draft::new("seen.scn", source).file("here.csv", table).parse();
+        let model = model.unwrap_or_else(|errors| panic!("{scene}\n{errors}"));
+        let said = model.warnings().to_string();
+        let places: Vec<Vec2> =
+            (0..model.scenario().agents.len()).map(|k| place(model.scenario(), k)).collect();
+        assert!(model.trial(0, 0).is_ok(), "{scene}");
+        (places, said)
+    };
+    let table = |places: &[(f64, f64)]| {
+        let rows = places.iter().enumerate().map(|(k, (x, y))| format!("0,{},{x},{y}\n", k + 1));
+        format!("time,id,x,y\n{}", rows.collect::<String>())
+    };
+    let pair = table(&[(2.0, 0.3), (2.0, 0.2)]);
+    for scene in [
+        "obstacle bench: rect (0, 0) .. (4, 3)",
+        "obstacle post: circle (2, 1) radius 1 m",
+        "obstacle bench: rect (0, 0) .. (4, 3)\nwall (1.6, -2) -- (1.6, 0)\nwall (2.4, -2) -- (2.4, 0)",
+    ] {
+        let (places, said) = start(scene, &pair);
+        let apart = (places[0] - places[1]).norm();
+        assert!((0.1..0.6).contains(&apart) && places.iter().all(|p| p.y < 0.0), "{scene} {places:?}");
+        assert!(said.contains("`all[2]` was at the place of `all[1]`"), "{said}");
+    }
+    // Recorded at one point, without any barrier; and no wall is between them.
+    let (places, _) = start("wall (2.1, -9) -- (2.1, 9)", &table(&[(1.9, 0.0), (1.9, 0.0), (1.9, 0.0)]));
+    assert!(places.iter().all(|p| p.x < 2.1), "{places:?}");
+    assert!((places[1] - places[2]).norm() > 0.1, "{places:?}");
+}

@@ -89,6 +89,23 @@ pub(super) fn beside(barriers: &[Solid<'_>], from: Vec2, radius: f64) -> Option<
     None
 }
 
+/// Places around a point at which a disc touches one at the point, or nearly, and no barrier is in the way.
+fn around<'b>(barriers: &'b [Solid<'_>], p: Vec2, radius: f64) -> impl Iterator<Item = Vec2> + 'b {
+    let turned = move |k: i32| {
+        let apart = 2.0 * radius / f64::from(1 + k / 16);
+        rotated(Vec2::new(apart, 0.0), f64::from(k) * std::f64::consts::TAU / 16.0)
+    };
+    let is_clear = move |way: &Vec2| {
+        [0.5, 0.75, 1.0].into_iter().all(|share| in_the_way(barriers, p + way * share, radius).is_none())
+    };
+    (0..64).map(turned).filter(is_clear).map(move |way| p + way)
+}
+
+/// A point up to [`ONE_POINT`].
+fn key(p: Vec2) -> (i64, i64) {
+    ((p.x / ONE_POINT).round() as i64, (p.y / ONE_POINT).round() as i64)
+}
+
 /// The smallest radius that a trial can give an agent, m.
 fn least_radius(agent: &Agent) -> f64 {
     let drawn = agent.body[Parameter::Radius].bounds().0;
@@ -123,11 +140,40 @@ fn has_room(shape: &Shape, radius: f64, barriers: &[Solid<'_>]) -> bool {
 }
 
 impl Elaborator<'_> {
+    /// Moves apart who was seen at the place of somebody else, or was moved to it.
+    fn part(&mut self, people: &mut People, barriers: &[Solid<'_>]) {
+        let is_seen = |agent: &Agent| !agent.start.seen.is_empty();
+        let (seen, given): (Vec<usize>, Vec<usize>) =
+            (0..people.agents.len()).partition(|k| is_seen(&people.agents[*k]));
+        let mut taken: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+        for k in given.into_iter().filter(|k| !people.coming.contains(&AgentId(*k as u32))).chain(seen) {
+            let Position::Point(p) = people.agents[k].start.position else { continue };
+            let Some(first) = taken.get(&key(p)).copied().filter(|_| is_seen(&people.agents[k])) else {
+                taken.insert(key(p), k);
+                continue;
+            };
+            let radius = least_radius(&people.agents[k]);
+            // Without a place the start is refused.
+            let free = |q: &Vec2| !taken.contains_key(&key(*q));
+            let Some(q) = around(barriers, p, radius).find(free) else { continue };
+            taken.insert(key(q), k);
+            people.agents[k].start.position = Position::Point(q);
+            let Some(span) = written(&people.places, AgentId(k as u32)) else { continue };
+            let (name, other) = (&people.agents[k].name, &people.agents[first].name);
+            let by = (q - p).norm();
+            let said = format!("`{name}` was at the place of `{other}` and starts {by:.3} m beside it");
+            let title = "persons were seen at one place, or moved to it, and start side by side";
+            self.note(Diagnostic::warning(Code::W0701, span, title).related(span, said));
+        }
+    }
+
     /// Refuses the starts that no trial can make.
-    pub(super) fn check_places(&mut self, people: &People) {
+    pub(super) fn check_places(&mut self, people: &mut People) {
         let scene = self.scene.clone();
         let unrolled = scene.unrolled();
         let barriers = solids(&unrolled);
+        self.part(people, &barriers);
+        let people = &*people;
         let mut points: BTreeMap<(i64, i64), AgentId> = BTreeMap::new();
         let mut near: BTreeMap<AgentId, Vec<(AgentId, f64)>> = BTreeMap::new();
         // The last declaration about which something was said.
@@ -142,8 +188,7 @@ impl Elaborator<'_> {
             let wrong =
                 match &agent.start.position {
                     Position::Point(p) => {
-                        let key = ((p.x / ONE_POINT).round() as i64, (p.y / ONE_POINT).round() as i64);
-                        let first = if comes { id } else { *points.entry(key).or_insert(id) };
+                        let first = if comes { id } else { *points.entry(key(*p)).or_insert(id) };
                         self.beside_barriers(agent, *p, comes, &barriers, span).or_else(|| {
                             let other = &people.agents[first.0 as usize];
                             (first != id && other.name != agent.name)

@@ -210,7 +210,7 @@ impl<'a> Elaborator<'a> {
         let moves = self.all_moves(file, &people);
         self.check_unused(file);
         self.check_titles(file);
-        self.check_places(&people);
+        self.check_places(&mut people);
         if clock.is_err() || self.failed() {
             self.keep_starts(people, sources);
             return Err(Reported);
