@@ -1,9 +1,10 @@
 //! The adviser: Algorithms 1 and 4 of Given-Wilson et al. 2017, one cycle for each batch of observations.
 
 use super::advice::{Advice, GroupSeen, OptionSeen, Place, Status, UserSeen};
+use super::grouping::groups_until;
 use super::place::{fit, unit};
 use super::role::Role;
-use super::sight::{Followed, followed, seen};
+use super::sight::{Followed, around, followed, seen};
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Ask, Query, Study};
@@ -19,10 +20,13 @@ use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::Span;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Points that a trace keeps: a minute at 2.5 Hz.
 const KEPT: usize = 150;
+/// Most observations of a cycle, those beyond the range left out.
+const MOST_SEEN: usize = 2000;
 /// The advice was followed if the user moved within this angle (its cosine, 20°) and this speed, m/s.
 const FOLLOWS: (f64, f64) = (0.939_692_620_785_908_4, 0.3);
 
@@ -125,7 +129,7 @@ impl<'a> Adviser<'a> {
             self.sighted = Some(time);
         }
         let all = followed(self.tracker.active(), batches, time, None);
-        self.grouped(time, &all);
+        self.grouped(time, &all, &|| false);
         Ok(())
     }
 
@@ -149,12 +153,14 @@ impl<'a> Adviser<'a> {
     }
 
     /// The clusters of some people, and their numbers.
-    fn grouped(&mut self, time: f64, all: &[Followed]) -> Vec<(u64, Vec<usize>)> {
+    fn grouped(&mut self, time: f64, all: &[Followed], is_over: &dyn Fn() -> bool) -> Vec<(u64, Vec<usize>)> {
         // As a check has them, which finds the same groups.
         let mut sightings: Vec<_> = all.iter().map(|one| one.sighting).collect();
         sightings.sort_by_key(|one| one.id);
-        let groups = super::groups(&sightings);
-        let member = |id: &u32| all.iter().position(|one| one.sighting.id == *id);
+        let groups = groups_until(&sightings, is_over);
+        let places: BTreeMap<u32, usize> =
+            all.iter().enumerate().map(|(k, one)| (one.sighting.id, k)).collect();
+        let member = |id: &u32| places.get(id).copied();
         let places: Vec<Vec<usize>> =
             groups.iter().map(|group| group.iter().filter_map(member).collect()).collect();
         let traces: Vec<Vec<u64>> = places
@@ -181,20 +187,45 @@ impl<'a> Adviser<'a> {
         let time = batches.first().map_or(0.0, |batch| batch.time);
         let mut advice = Advice { cycle: self.cycle, time, ..Advice::default() };
         self.cycle += 1;
-        if let Err(error) = self.tracker.step(batches, &mut ConstantVelocity) {
-            advice.notes.push(error.to_string());
-            return Ok(advice);
+        // The clock of the stream was set back.
+        if self.tracker.last().is_some_and(|last| time < last) {
+            self.tracker.restart();
+            (self.last, self.sighted) = (None, None);
         }
-        drop(self.tracker.take_ended());
         if batches.iter().any(|batch| !batch.seen.is_empty()) {
             self.sighted = Some(time);
         }
-        let longest = Tracking::default().longest;
         let person = self.user();
+        let near = self.options.range.and_then(|range| around(batches, self.tracker.active(), person, range));
+        let near = near.as_deref().unwrap_or(batches);
+        let count: usize = near.iter().map(|batch| batch.seen.len()).sum();
+        if count > MOST_SEEN {
+            advice.status = Status::Late;
+            advice
+                .notes
+                .push(format!("{count} observations at a time, more than {MOST_SEEN}: set a `--range`"));
+            return Ok(advice);
+        }
+        let numbers = match self.tracker.step(near, &mut ConstantVelocity) {
+            Ok(numbers) => numbers,
+            Err(error) => {
+                advice.notes.push(error.to_string());
+                return Ok(advice);
+            }
+        };
+        let distinct = |batch: &Vec<u64>| batch.iter().collect::<BTreeSet<_>>().len();
+        let twice: usize = numbers.iter().map(|batch| batch.len() - distinct(batch)).sum();
+        if twice > 0 {
+            advice
+                .notes
+                .push(format!("{twice} observations at the place of another one are taken as one person"));
+        }
+        drop(self.tracker.take_ended());
+        let longest = Tracking::default().longest;
         let trace = self.tracker.active().iter().find(|trace| trace.person == Some(person));
         let trace = trace.filter(|trace| time - trace.end().time <= longest).map(|trace| trace.number);
         let all = followed(self.tracker.active(), batches, time, trace);
-        let groups = self.grouped(time, &all);
+        let groups = self.grouped(time, &all, &|| budget.is_over());
         advice.people = all.len();
         advice.groups = groups.iter().map(|group| group_seen(group, &all)).collect();
         let user = trace.and_then(|number| all.iter().position(|one| one.trace == number));
@@ -205,6 +236,12 @@ impl<'a> Adviser<'a> {
             return Ok(advice);
         };
         advice.followed = self.last.and_then(|last| has_followed(last, time, all[user].sighting.position));
+        if budget.is_over() {
+            advice.status = Status::Late;
+            advice.notes.push("no time was left for trials".to_owned());
+            self.last = None;
+            return Ok(advice);
+        }
         match self.scene(&mut advice, &all, &groups, user)? {
             Some(scene) => self.rank(&mut advice, &scene, executor, budget)?,
             None => advice.status = Status::Late,
@@ -237,8 +274,10 @@ impl<'a> Adviser<'a> {
         self.files.see(self.role.tracks.clone(), seen);
         let input = Input { files: &self.files, ..self.input };
         let examined = examine(&input);
-        let errors: Vec<Diagnostic> =
-            examined.found.into_iter().filter(|one| one.severity == Severity::Error).collect();
+        let (errors, warnings): (Vec<Diagnostic>, Vec<Diagnostic>) =
+            examined.found.into_iter().partition(|one| one.severity == Severity::Error);
+        let moved = warnings.into_iter().filter(|one| one.code == Code::W0701);
+        advice.notes.extend(moved.map(|one| one.title));
         let study = match examined.study {
             Some(study) if errors.is_empty() => study,
             _ if !errors.is_empty() && errors.iter().all(is_of_a_place) => {

@@ -6,6 +6,7 @@
 
 mod advice;
 mod adviser;
+mod clock;
 mod cycle;
 mod grouping;
 mod place;
@@ -14,6 +15,6 @@ mod sight;
 
 pub use advice::{Advice, GroupSeen, OptionSeen, Place, Status, UserSeen, Walked};
 pub use adviser::{Adviser, Advising};
-pub use cycle::Cycles;
+pub use cycle::{Cycles, Pushed};
 pub use grouping::groups;
 pub use role::{Role, id, role};

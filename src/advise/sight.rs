@@ -8,6 +8,25 @@ use crate::perception::{ConstantVelocity, Motion, Trace, TracePoint};
 /// Ids of people whose id is unknown begin here, in the order of their traces.
 const UNKNOWN: u32 = 1 << 31;
 
+/// So far beyond the range people are observed, m: whoever comes into it has a trace already.
+const MARGIN: f64 = 10.0;
+
+/// The batches without observations far beyond the range of the user, m; `None` where the user's place is unknown.
+pub(super) fn around(batches: &[Batch], traces: &[Trace], user: u32, range: f64) -> Option<Vec<Batch>> {
+    let time = batches.first()?.time;
+    let own = batches.iter().flat_map(|batch| &batch.seen).find(|one| one.id == Some(user));
+    let projected = || {
+        let end = traces.iter().find(|trace| trace.person == Some(user))?.end();
+        Some(ConstantVelocity.project(&[end], time).first()?.position)
+    };
+    let centre = own.map(|one| one.position).or_else(projected)?;
+    let mut near = batches.to_vec();
+    for batch in &mut near {
+        batch.seen.retain(|one| (one.position - centre).norm() <= range + MARGIN);
+    }
+    Some(near)
+}
+
 /// Somebody who is taken into account.
 #[derive(Clone, Debug)]
 pub(super) struct Followed {

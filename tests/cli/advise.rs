@@ -123,6 +123,98 @@ fn sensors_that_always_come_in_one_order_are_joined() {
 }
 
 #[test]
+fn a_batch_far_ahead_is_left_out_and_said_at_once() {
+    let line = |t: f64, x: f64| format!("{{\"t\":{t},\"seen\":[{{\"x\":{x},\"y\":0,\"id\":2}}]}}\n");
+    let input: String =
+        (0..10).map(|k| line(if k == 3 { 1000.5 } else { f64::from(k) * 0.5 }, f64::from(k) * 0.5)).collect();
+    let said = fed(&input, &[]);
+    assert_eq!(statuses(&said.out), ["advice"; 9], "{}", said.err);
+    let note = "a batch at 1000.5 s is 999.5 s after the last one and is left out";
+    assert_eq!(said.err, format!("warning: line 4: {note}\n"));
+    assert!(lines(&said.out)[3]["notes"].to_string().contains(note), "{}", said.out);
+    // A clock that is set back is followed, with new traces.
+    let input: String = (0..20).map(|k| line(f64::from(k % 10) * 0.5, f64::from(k) * 0.5)).collect();
+    let said = fed(&input, &[]);
+    assert_eq!(statuses(&said.out), ["advice"; 19], "{}", said.out);
+    assert!(said.err.contains("line 12: the clock stays at 0.5 s and is followed"), "{}", said.err);
+}
+
+#[test]
+fn a_person_who_is_reported_twice_is_one() {
+    for (twice, people) in [
+        (r#"{"x":8,"y":3},{"x":8,"y":3}"#, 2),
+        (r#"{"x":8,"y":3}"#, 2),
+        // At the place of the user's device.
+        (r#"{"x":0,"y":0}"#, 1),
+        // Two ids are two people, who are moved apart.
+        (r#"{"x":0,"y":0,"id":9}"#, 2),
+        (r#"{"x":8,"y":3,"id":8},{"x":8,"y":3,"id":9}"#, 3),
+    ] {
+        let input = format!("{{\"t\":0,\"seen\":[{{\"x\":0,\"y\":0,\"id\":2}},{twice}]}}\n");
+        let said = fed(&input, &[]);
+        let line = &lines(&said.out)[0];
+        assert!(line["people"] == people && line["status"] != "late", "{twice}: {line}");
+        let is_noted = line["notes"].to_string().contains(" place");
+        assert_eq!(is_noted, twice != r#"{"x":8,"y":3}"#, "{line}");
+    }
+}
+
+#[test]
+fn many_people_are_answered_within_the_range_and_refused_without() {
+    let crowd: String =
+        (1..10_000).map(|k| format!(",{{\"x\":{},\"y\":{}}}", 2 * (k % 100), 2 * (k / 100))).collect();
+    let input = format!("{{\"t\":0,\"seen\":[{{\"x\":0,\"y\":0,\"id\":2}}{crowd}]}}\n");
+    let line = &lines(&fed(&input, &["--range", "5m"]).out)[0];
+    assert_eq!((line["status"].as_str(), line["people"].as_u64()), (Some("advice"), Some(8)), "{line}");
+    let line = &lines(&fed(&input, &[]).out)[0];
+    assert_eq!(line["status"], "late");
+    assert!(line["notes"].to_string().contains("10000 observations at a time, more than 2000"), "{line}");
+}
+
+#[test]
+fn a_stream_without_lines_is_refused() {
+    let mut long = format!("{{\"t\":0,\"seen\":[],\"more\":\"{}\"}}\n", "x".repeat(17 << 20));
+    long.push_str("{\"t\":0.5,\"seen\":[{\"x\":0,\"y\":0,\"id\":2}]}\n");
+    let said = fed(&long, &[]);
+    assert_eq!(said.err, "warning: line 1: longer than 16 MB; the line is skipped\n");
+    assert_eq!(statuses(&said.out), ["advice"]);
+}
+
+#[test]
+fn messages_about_lines_name_the_member_and_its_form() {
+    for (line, part) in [
+        (
+            r#"{"t":0,"seen":[{"x":0,"y":0,"id":"two"}]}"#,
+            "`id` must be a whole number from 0 to 4294967295 (got string \"two\")",
+        ),
+        (r#"{"t":0,"seen":[{"x":0,"y":0,"id":-1}]}"#, "`id` must be a whole number"),
+        (r#"{"t":0,"seen":[[1,2,3]]}"#, "`seen` must be a list of JSON objects"),
+        (r#"{"t":0,"seen":"x"}"#, "`seen` must be a list (got string \"x\")"),
+        (r#"{"t":"0","seen":[]}"#, "`t` must be a number"),
+        ("[]", "a line must be a JSON object"),
+        ("0.4,1,2", "a line must be a JSON object (got floating point `0.4`)"),
+        ("not json", "the line is not JSON: expected value"),
+        (r#"{"t":4.8"#, "the line is not JSON: EOF"),
+    ] {
+        let said = fed(&format!("{line}\n"), &[]).err;
+        assert!(said.contains(part) && said.contains("write for example {\"t\":0.4"), "{line}\n{said}");
+        for word in ["struct", "u32", "f64", "ident", "elements"] {
+            assert!(!said.contains(word), "{said}");
+        }
+    }
+    let marked = fed("\u{feff}{\"t\":0,\"seen\":[{\"x\":0,\"y\":0,\"id\":2}]}\n", &[]);
+    assert_eq!((statuses(&marked.out), marked.err), (vec!["advice".to_owned()], String::new()));
+}
+
+#[test]
+fn a_page_of_a_live_stream_needs_a_recording() {
+    let said = fed("", &["--report", "a.html"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("`--replay lidar --report a.html`"), "{}", said.err);
+    assert!(said.err.contains("tracks lidar = observations \"obs.jsonl\""), "{}", said.err);
+}
+
+#[test]
 fn a_long_stream_is_answered_line_by_line() {
     let input: String = (0..2000)
         .map(|k| format!("{{\"t\":{},\"seen\":[{{\"x\":{},\"y\":0,\"id\":2}}]}}\n", k, k % 20))

@@ -34,7 +34,7 @@ pub(in crate::cli) struct AdviseCommand {
     #[arg(long, requires = "replay")]
     pub(in crate::cli) follow: bool,
     /// Also write a self-contained HTML page that plays the recording, with the advice of each cycle.
-    #[arg(long, value_name = "FILE.html", requires = "replay")]
+    #[arg(long, value_name = "FILE.html")]
     pub(in crate::cli) report: Option<PathBuf>,
     /// Id of the user, instead of the id in the model.
     #[arg(long, value_name = "ID")]

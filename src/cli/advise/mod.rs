@@ -39,9 +39,16 @@ pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
 
 /// Answers all batches.
 fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<Exit, Diagnostic> {
+    let replayed = arguments.replay.as_ref();
+    if let (None, Some(path)) = (replayed, &arguments.report) {
+        let hint = format!(
+            "declare `tracks lidar = observations \"obs.jsonl\"` in the scenario, and use `--replay lidar --report {}`",
+            path.display()
+        );
+        return Err(complaint::argument("`--report` needs a recording, and a live stream is none", hint));
+    }
     let role = role(&parsed.scenario)?;
     let threads = threads(arguments.threads)?;
-    let replayed = arguments.replay.as_ref();
     let recording = replayed.map(|name| replay::batches(parsed, name, arguments)).transpose()?;
     let options = Advising {
         seed: arguments.seed,
@@ -50,7 +57,8 @@ fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<
         only: arguments.only.clone(),
     };
     let adviser = Adviser::new(parsed.input(), role, options);
-    let mut caller = Caller { arguments, adviser, threads, shown: Advised::default() };
+    let mut caller =
+        Caller { arguments, adviser, threads, late: Default::default(), shown: Advised::default() };
     let done = match recording {
         Some(recording) => replay::run(&mut caller, &recording),
         None => stream::run(&mut caller),
@@ -74,6 +82,8 @@ struct Caller<'a> {
     arguments: &'a AdviseCommand,
     adviser: Adviser<'a>,
     threads: Threads,
+    /// By how much the last cycles passed the time for their trials.
+    late: [Duration; 8],
     /// What the page of the call shows; gathered only for one.
     shown: Advised,
 }
@@ -83,11 +93,20 @@ impl Caller<'_> {
     fn answer(&mut self, batches: &[Batch], notes: &mut Vec<String>) -> Result<bool, Vec<Diagnostic>> {
         #[allow(clippy::disallowed_methods, reason = "the command line keeps deadlines")]
         let started = Instant::now();
-        let limit = self.arguments.deadline.map(|deadline| deadline.saturating_sub(RESERVE));
+        // The second largest: one late cycle is no sign that the next ones will be.
+        let mut late = self.late;
+        late.sort_unstable();
+        let margin = RESERVE.saturating_add(late[late.len() - 2]);
+        let limit = self.arguments.deadline.map(|deadline| deadline.saturating_sub(margin).max(deadline / 2));
         let mut budget = Budget::new(DEFAULT_TRIALS, limit);
         budget.max_total = self.arguments.total_trials;
         let mut found = self.adviser.advise(batches, &self.threads, &budget)?;
         found.notes.splice(0..0, std::mem::take(notes));
+        // Nothing depends on the clock where the number of trials is given.
+        if let (Some(limit), None) = (limit, self.arguments.total_trials) {
+            let place = found.cycle as usize % self.late.len();
+            self.late[place] = started.elapsed().saturating_sub(limit);
+        }
         let line = advice::line(&found, self.arguments.velocity, started.elapsed().as_secs_f64() * 1e3);
         if self.arguments.report.is_some() {
             self.shown.cycles.push(found);
