@@ -55,7 +55,7 @@ fn main() {
             let traces = best(|| drop(black_box(tracker.clone().step(&next, &mut ConstantVelocity))));
             let moving: Vec<(Vec2, Option<Vec2>)> = people.iter().map(|(p, v)| (*p, Some(*v))).collect();
             let groups = best(|| {
-                drop(black_box(clusters(&moving, &Clustering::default(), TrialKey::default(), 0, &|| false)))
+                black_box(clusters(&moving, &Clustering::default(), TrialKey::default(), 0, &|| false));
             });
             println!("| {count} | {density} | {traces:?} | {groups:?} |");
         }

@@ -47,7 +47,7 @@ struct Clock {
 /// The clocks of all sensors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clocks {
-    sensors: BTreeMap<Option<String>, Clock>,
+    sensors: BTreeMap<String, Clock>,
     batches: u64,
     /// Time between the last two batches of the stream, s.
     step: Option<f64>,
@@ -55,7 +55,7 @@ pub(super) struct Clocks {
 
 impl Clocks {
     /// Reads the time of a batch of a sensor; the stream is at `now`.
-    pub(super) fn read(&mut self, sensor: &Option<String>, time: f64, now: Option<f64>) -> Timing {
+    pub(super) fn read(&mut self, sensor: &str, time: f64, now: Option<f64>) -> Timing {
         self.batches += 1;
         let batches = self.batches;
         let is_recent = |other: &Clock| batches - other.heard <= RECENT;
@@ -67,7 +67,7 @@ impl Clocks {
         let others = self.sensors.iter().filter(|(name, other)| *name != sensor && counts(other));
         let others: Vec<f64> = others.map(|(_, other)| other.last).collect();
         let is_known = self.sensors.contains_key(sensor);
-        let clock = self.sensors.entry(sensor.clone()).or_default();
+        let clock = self.sensors.entry(sensor.to_owned()).or_default();
         let own = time - std::mem::replace(&mut clock.last, time);
         let step = Some(own).filter(|own| is_known && *own > 0.0);
         clock.heard = batches;

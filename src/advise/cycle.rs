@@ -41,7 +41,7 @@ impl Cycles {
         let mut pushed = Pushed::default();
         let now = self.waiting.first().map(|first| first.time).or(self.last);
         let (of, at) = (sensor(&batch), seconds(batch.time));
-        match self.clocks.read(&batch.sensor, batch.time, now) {
+        match self.clocks.read(batch.sensor.as_deref().unwrap_or_default(), batch.time, now) {
             Timing::InStep => {}
             Timing::Jumped { by, is_new, is_scaled } => {
                 let far = seconds(by.abs());

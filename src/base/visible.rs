@@ -54,6 +54,9 @@ pub fn same_length(text: &str) -> Cow<'_, str> {
 
 /// A text in which numbers of more than [`DIGITS`] digits are written with an exponent: `1e300`.
 pub fn shortened(text: String) -> String {
+    if text.len() <= DIGITS {
+        return text;
+    }
     let is_digit = |c: char| c.is_ascii_digit() || c == '.';
     let mut shown = String::with_capacity(text.len());
     for part in text.split_inclusive(|c| !is_digit(c)) {
