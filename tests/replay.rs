@@ -134,15 +134,16 @@ fn a_party_is_where_the_mean_of_its_members_is() {
 fn evaluated(replay: &Replay, kind: &str, instants: &[Instant], trials: u64, count: usize) -> Predicted {
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
-    let options = Evaluating { trials, seed: 1, beyond: Beyond::Onward };
-    evaluate(replay, kind, instants, &options, (&threads(count), &drivers)).unwrap()
+    let options = Evaluating { trials, seed: 1 };
+    let judged = monitor(replay, instants, Beyond::Onward, &threads(count)).unwrap();
+    evaluate(replay, kind, &judged, &options, (&threads(count), &drivers)).unwrap()
 }
 
 #[test]
 fn predictions_do_not_depend_on_the_number_of_threads() {
     let asked = "property near = F<=2 s (exists a in others: distance(user, a) < 2 m)\n";
     let replay = replay(PAIR, asked, LINES, Velocity::Seen, Whose::Everybody);
-    let instants = eligible(&replay, replay.instants(1.0, everything()), 1.0, 0.5, 4.0);
+    let instants = eligible(&replay, replay.instants(1.0, everything()), 0.5, 4.0);
     let whole: Vec<(f64, u32)> = instants.iter().map(|one| (one.time, one.person)).collect();
     assert_eq!(whole, [(1.0, 1), (1.0, 2), (2.0, 1), (2.0, 2), (3.0, 1), (3.0, 2), (4.0, 1), (4.0, 2)]);
     let one = evaluated(&replay, "adult", &instants, 20, 1);
@@ -153,6 +154,70 @@ fn predictions_do_not_depend_on_the_number_of_threads() {
     let constant = evaluated(&replay, "constant", &instants, 20, 1);
     assert!(constant.predictions[0].iter().all(|one| one.probability == f64::from(u8::from(one.happened))));
     assert!(constant.displacements.iter().all(|one| one.average < 1e-9 && one.last < 1e-9));
+}
+
+#[test]
+fn instants_far_apart_are_some_of_those_at_each_step() {
+    let asked = "property near = F<=2 s (exists a in others: distance(user, a) < 2 m)\n";
+    let replay = replay(PAIR, asked, LINES, Velocity::Seen, Whose::Everybody);
+    let at_each = eligible(&replay, replay.instants(1.0, everything()), 0.5, 3.0);
+    for every in [0.5, 2.0, 3.0, 4.0, 8.0] {
+        let found = eligible(&replay, replay.instants(every, everything()), 0.5, 3.0);
+        let is_whole = |time: f64| (time / every).fract() == 0.0;
+        let wanted: Vec<Instant> = at_each.iter().copied().filter(|one| is_whole(one.time)).collect();
+        let is_of_a_step = |one: &Instant| one.time.fract() == 0.0;
+        let found: Vec<Instant> = found.into_iter().filter(is_of_a_step).collect();
+        assert_eq!(found, wanted, "every {every} s");
+    }
+    // The step of the recording does not divide this time.
+    assert_eq!(eligible(&replay, replay.instants(1.0, everything()), 0.5, 2.5), at_each);
+}
+
+/// Two people who pass each other with 0.5 m between their centres.
+fn passing() -> String {
+    let at = |k: i32| {
+        let x = 0.4 * f64::from(k);
+        format!("{x},1,{x},0\n{x},2,{},0.5\n", 8.0 - x)
+    };
+    format!("time,id,x,y\n{}", (0..=20).map(at).collect::<String>())
+}
+
+#[test]
+fn kinds_without_forces_have_the_body_of_the_user() {
+    let free = "A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)";
+    let kinds = [
+        format!("kind adult: sfm preset smc1 {{ radius = 0.2 m  headway = 0 s  {free} }}"),
+        "kind base: sfm preset smc1 { radius = 0.2 m }\nkind adult: base { A2 = 300 N  B2 = 1 m }".to_owned(),
+        "kind base: sfm preset helbing2000\nkind adult: base { radius = wide / 2  noise = 0.1 m/s }"
+            .to_owned(),
+        "kind wide_one: sfm { radius = 0.4 m }\nkind adult: wide_one preset smc1".to_owned(),
+        "kind adult: planned { radius = 0.2 m  limit speed = 1.5 m/s }".to_owned(),
+    ];
+    let asked = "property apart = G<=2 s (clearance(user) > 0 m)\n";
+    let tracks = passing();
+    for kind in kinds {
+        let people = "agent user: adult from here at 0 s id 1 { A = 9 N }\n\
+            agents others: adult from here at 0 s except 1\n";
+        let people =
+            if kind.contains("planned") { people.replace("{ A = 9 N }", "") } else { people.to_owned() };
+        let scenario = format!(
+            "horizon = 4 s\nstep = 0.1 s\nparam wide = 0.4 m\ntracks here = csv \"lines.csv\"\n{kind}\n{people}"
+        );
+        let replay = replay(&scenario, asked, &tracks, Velocity::Seen, Whose::Everybody);
+        let instants = eligible(&replay, replay.instants(0.4, (2.0, 4.0)), 0.5, 2.0);
+        assert_eq!(instants.len(), 12, "{kind}");
+        for name in ["constant", "langevin", "helbing2000"] {
+            let found = evaluated(&replay, name, &instants, 4, 1);
+            let held = found.predictions[0].iter().filter(|one| one.happened).count();
+            assert_eq!(held, 12, "{name}: what happened is the same for all kinds\n{kind}");
+            if name == "constant" {
+                assert!(found.predictions[0].iter().all(|one| one.probability == 1.0), "{kind}");
+                assert!(found.displacements.iter().all(|one| one.average < 1e-9), "{kind}");
+            }
+            let collisions: f64 = found.displacements.iter().map(|one| one.collisions).sum();
+            assert!(name != "constant" || collisions == 0.0, "{name}: {collisions}\n{kind}");
+        }
+    }
 }
 
 /// The mean errors of constant velocity by the definition: everybody over 0.5 m/s with a position before and twelve after.
@@ -202,7 +267,7 @@ fn constant_velocity_has_the_known_errors() {
         assert_eq!(plain_count, count, "{name}");
         assert!((plain_ade - ade).abs() < 6e-4 && (plain_fde - fde).abs() < 6e-4, "{plain_ade} {plain_fde}");
         let replay = replay(scenario, asked, &text, velocity, Whose::Everybody);
-        let instants = eligible(&replay, replay.instants(0.4, everything()), 0.4, 0.5, 4.8);
+        let instants = eligible(&replay, replay.instants(0.4, everything()), 0.5, 4.8);
         assert_eq!(instants.len(), count, "{name}");
         let found = evaluated(&replay, "constant", &instants, 1, 2).displacements;
         let mean = |of: fn(&Displacement) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;

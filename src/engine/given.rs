@@ -10,7 +10,7 @@ use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::compile::study::World;
 use crate::kernel::Run;
-use crate::model::{AgentId, Body, Law, Parameter};
+use crate::model::{AgentId, Body, Kind, Law, Parameter};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -52,12 +52,13 @@ pub fn judge(
     columns.iter().map(one).collect()
 }
 
-/// The same world with everybody of the mean of each law.
+/// The same world with everybody of the mean of each law; a recording moves them, so nobody plans or steps.
 #[must_use]
 pub fn averaged(world: &World) -> World {
     let mut scenario = (*world.scenario).clone();
     for agent in &mut scenario.agents {
         let mut body: Body = (*agent.body).clone();
+        (body.kind, body.planner, body.stepper) = (Kind::Sfm, None, None);
         for parameter in Parameter::ALL {
             body[parameter] = Law::Constant(body[parameter].mean());
         }

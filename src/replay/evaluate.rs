@@ -8,17 +8,16 @@ use super::displacement::Displacement;
 use super::formulas::targets;
 use super::instants::Instant;
 use super::kinds::CONSTANT;
-use super::monitor::happened;
+use super::monitor::Judged;
 use super::region::{Fit, HORIZONS};
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
-use crate::compile::study::World;
 use crate::engine::cell::{Reading, Series};
 use crate::engine::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
-use crate::model::{AgentId, Parameter};
+use crate::model::AgentId;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeSet;
 
@@ -32,8 +31,6 @@ pub struct Evaluating {
     pub trials: u64,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// What is taken of others after the end of their tracks.
-    pub beyond: Beyond,
 }
 
 /// A probability and what happened.
@@ -66,62 +63,54 @@ pub type PositionFits = (u32, [Option<Fit>; HORIZONS.len()]);
 /// What one instant yields: for each property a probability and what happened.
 type Row = (Vec<Option<(f64, bool)>>, Option<(Displacement, [Option<Fit>; HORIZONS.len()])>);
 
-/// The instants at which the user moves, was there at the last instant before, and is there for `seconds` from then on.
-pub fn eligible(
-    replay: &Replay,
-    instants: Vec<Instant>,
-    every: f64,
-    speed: f64,
-    seconds: f64,
-) -> Vec<Instant> {
+/// The instants at which the user moves, was there one step of the recording before, and is there for `seconds` from then on.
+pub fn eligible(replay: &Replay, instants: Vec<Instant>, speed: f64, seconds: f64) -> Vec<Instant> {
+    let step = replay.recording.step();
     let is_there = |instant: &Instant, time: f64| replay.recording.person_at(instant.person, time).is_some();
     let moves = |instant: &Instant| {
         let now = replay.recorded.person_at(instant.person, instant.time);
         now.is_some_and(|now| now.velocity.norm() > speed)
     };
     let lasts = |instant: &Instant| {
-        let steps = (seconds / every).round() as u64;
-        (1..=steps).all(|k| is_there(instant, instant.time + k as f64 * every))
+        let steps = (seconds / step + 1e-9) as u64;
+        let times = (1..=steps).map(|k| k as f64 * step).chain([seconds]);
+        times.into_iter().all(|time| is_there(instant, instant.time + time))
     };
     let mut kept = instants;
-    kept.retain(|instant| moves(instant) && is_there(instant, instant.time - every) && lasts(instant));
+    kept.retain(|instant| moves(instant) && is_there(instant, instant.time - step) && lasts(instant));
     kept
 }
 
-/// The predictions of a kind at some instants.
+/// The predictions of a kind at some instants. The outcomes and the radius at which ways collide are those of the model as
+/// it is written, so that they are the same for all kinds.
 ///
 /// # Errors
 /// What is wrong with the model.
 pub fn evaluate(
     replay: &Replay,
     kind: &str,
-    instants: &[Instant],
+    instants: &[Judged],
     options: &Evaluating,
     (threads, drivers): (&Threads, &MakeDrivers),
 ) -> Result<Predicted, Vec<Diagnostic>> {
     let own = replay.with_kind(kind)?;
     // Without any random number one trial says all.
     let trials = if kind == CONSTANT { 1 } else { options.trials };
-    let numbered: Vec<(u64, Instant)> = (0..).zip(instants.iter().copied()).collect();
-    let one = |(number, instant): &(u64, Instant)| -> Result<Row, Vec<Diagnostic>> {
-        let study = match own.study_at(*instant) {
-            Ok(study) => study,
-            Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => {
-                return Ok((vec![None; own.formulas.names.len()], None));
-            }
-            Err(errors) => return Err(errors),
+    let numbered: Vec<(u64, &Judged)> = (0..).zip(instants).collect();
+    let one = |(number, judged): &(u64, &Judged)| -> Result<Row, Vec<Diagnostic>> {
+        let study = match own.study_at(judged.instant) {
+            Ok(study) if judged.reach.is_some() => study,
+            Err(errors) if errors.is_empty() || !errors.iter().all(is_of_a_place) => return Err(errors),
+            _ => return Ok((vec![None; own.formulas.names.len()], None)),
         };
         let targets = targets(&study);
         let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
         let Some(target) = targets.first() else { return Ok((Vec::new(), None)) };
-        let (Some(world), Some(prepared)) =
-            (study.worlds.get(target.world), PreparedWorld::of(&study, target.world, options.seed, drivers))
-        else {
+        let Some(prepared) = PreparedWorld::of(&study, target.world, options.seed, drivers) else {
             return Ok((Vec::new(), None));
         };
-        let truths = happened(&own, *instant, (world, &columns), options.beyond);
         let series = Series { seed: options.seed, branch: (number & 0xffff) as u16 };
-        Ok(predict(&own, *instant, (world, &prepared), (&columns, &truths), (series, trials)))
+        Ok(predict(&own, judged, &prepared, &columns, (series, trials)))
     };
     let rows: Vec<Row> = threads.map(&numbered, one).into_iter().collect::<Result<_, _>>()?;
     let count = own.formulas.names.len();
@@ -135,11 +124,11 @@ pub fn evaluate(
             .map(|(one, fits)| (one.person, *fits))
             .collect(),
     };
-    for (instant, (row, _)) in instants.iter().zip(&rows) {
+    for (judged, (row, _)) in instants.iter().zip(&rows) {
         for (k, cell) in row.iter().enumerate() {
             match cell {
                 Some((probability, happened)) => all.predictions[k].push(Prediction {
-                    instant: *instant,
+                    instant: judged.instant,
                     probability: *probability,
                     happened: *happened,
                 }),
@@ -153,15 +142,15 @@ pub fn evaluate(
 /// Trials from one instant on, beside what happened.
 fn predict(
     replay: &Replay,
-    instant: Instant,
-    (world, prepared): (&World, &PreparedWorld),
-    (columns, truths): (&[usize], &[Option<bool>]),
+    Judged { instant, truths, reach }: &Judged,
+    prepared: &PreparedWorld,
+    columns: &[usize],
     (series, trials): (Series, u64),
 ) -> Row {
-    let agents = &world.scenario.agents;
-    let own = agents.iter().position(|agent| agent.start.seen.contains(&replay.user())).unwrap_or(0);
+    let scenario = &prepared.program.scenario;
+    let own = replay.place_of_user(&scenario.agents);
     let (every, dt) = (replay.recording.step(), prepared.program.dt);
-    let last = PREDICTED.min(world.scenario.clock.seconds(Tick(prepared.horizon.0)));
+    let last = PREDICTED.min(scenario.clock.seconds(Tick(prepared.horizon.0)));
     let times: Vec<f64> = (1..=(last / every + 1e-9).floor() as u64).map(|k| k as f64 * every).collect();
     let tick = |time: &f64| (time / dt).round() as u64;
     let horizons = HORIZONS.iter().filter(|time| **time <= last + 1e-9);
@@ -183,14 +172,17 @@ fn predict(
     let place = |time: &f64| ticks.binary_search(&tick(time)).ok();
     let at_times = |way: &Vec<Vec2>| times.iter().filter_map(|time| way.get(place(time)?).copied()).collect();
     let ways: Vec<Vec<Vec2>> = found.paths.iter().map(at_times).collect();
-    let reach = 2.0 * agents[own].body[Parameter::Radius].mean();
     let fit = |time: f64| {
         let predicted: Vec<Vec2> =
             found.paths.iter().filter_map(|way| way.get(place(&time)?).copied()).collect();
         let seen = course(&replay.recording, instant.person, instant.time + time, Beyond::Unresolved);
         Fit::of(&predicted, seen?.0)
     };
-    (cells, displacement(replay, instant, &times, &ways, reach).map(|one| (one, HORIZONS.map(fit))))
+    (
+        cells,
+        displacement(replay, *instant, &times, &ways, reach.unwrap_or_default())
+            .map(|one| (one, HORIZONS.map(fit))),
+    )
 }
 
 /// Distances of ways from the recorded one.

@@ -2,13 +2,13 @@
 
 use super::situation::Replay;
 use crate::compile::presets::PRESETS;
-use crate::syntax::ast::{Item, ScenarioFile};
+use crate::syntax::ast::{Field, Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::parse_scenario;
 use crate::syntax::source::{Source, SourceId, Span};
 
-/// The kind without forces: everybody keeps the velocity.
+/// The kind without forces: everybody keeps the velocity. Its radius is that of the user.
 pub const CONSTANT: &str = "constant";
 
 /// The kind of a plain Langevin walker: no forces, and a noise of 0.2 m/s around the recorded velocity, which we chose.
@@ -16,7 +16,17 @@ pub const LANGEVIN: &str = "langevin";
 const LANGEVIN_NOISE: f64 = 0.2;
 
 /// Fields of agents that would change the velocity.
-const CHANGING: [&str; 4] = ["heading", "speed", "route", "noise"];
+const CHANGING: [&str; 3] = ["heading", "speed", "route"];
+
+/// Parameters of the kinds without forces: no force, and the time in which velocities return to the recorded ones.
+const FREE: [(&str, &str); 6] = [
+    ("A", "0 N"),
+    ("A2", "0 N"),
+    ("k1", "0 kg/s^2"),
+    ("k2", "0 kg/(m s)"),
+    ("headway", "0 s"),
+    ("tau", "0.5 s"),
+];
 
 /// A scenario all of whose people have the kind of a name: one that it declares, a preset or the beginning of the name of
 /// one, `constant` or `langevin`. Where the kind is not declared, its text is a source of its own.
@@ -32,13 +42,15 @@ fn with_kind(
     let declared: Vec<&str> = (file.items.iter())
         .filter_map(|item| if let Item::Kind(kind) = item { Some(kind.name.name.as_str()) } else { None })
         .collect();
+    let mut radius = None;
     let added = match (declared.contains(&name), preset(name)) {
         (true, _) => None,
         (false, _) if is_free(name) => {
             let noise = if name == LANGEVIN { LANGEVIN_NOISE } else { 0.0 };
-            Some(format!(
-                "kind {name}: sfm preset helbing2000 {{ A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)  noise = {noise} m/s }}\n"
-            ))
+            let (preset, own) = body_of_user(file);
+            radius = own.cloned();
+            let free: String = FREE.iter().map(|(name, value)| format!("{name} = {value}  ")).collect();
+            Some(format!("kind {name}: sfm preset {preset} {{ {free}noise = {noise} m/s }}\n"))
         }
         (false, Some(preset)) => Some(format!("kind {name}: sfm preset {preset} {{ }}\n")),
         (false, None) => {
@@ -52,7 +64,10 @@ fn with_kind(
     };
     let source = added.map(|text| Source::new(id, format!("--kinds {name}"), text));
     if let Some(source) = &source {
-        let (kind, _) = parse_scenario(source);
+        let (mut kind, _) = parse_scenario(source);
+        if let Some(Item::Kind(kind)) = kind.items.first_mut() {
+            kind.body.extend(radius);
+        }
         changed.items.splice(0..0, kind.items);
     }
     for item in &mut changed.items {
@@ -63,10 +78,30 @@ fn with_kind(
         };
         name.clone_into(&mut kind.name);
         if is_free(name) {
-            body.retain(|field| !CHANGING.contains(&field.name.name.as_str()));
+            let is_free = |name: &str| name == "noise" || FREE.iter().any(|(free, _)| *free == name);
+            body.retain(|Field { name, .. }| !CHANGING.contains(&name.name.as_str()) && !is_free(&name.name));
         }
     }
     Ok((changed, source))
+}
+
+/// The preset of the kind of the user, and the radius that the kind sets.
+fn body_of_user(file: &ScenarioFile) -> (&str, Option<&Field>) {
+    let (mut next, mut radius) = (kind_of_user(file), None);
+    // A kind starts from one that is declared; no more steps than there are declarations, whatever circle there is.
+    for _ in &file.items {
+        let kind = file.items.iter().find_map(|item| match item {
+            Item::Kind(kind) if Some(kind.name.name.as_str()) == next => Some(kind),
+            _ => None,
+        });
+        let Some(kind) = kind else { break };
+        radius = radius.or_else(|| kind.body.iter().find(|field| field.name.name == "radius"));
+        if let Some(preset) = &kind.preset {
+            return (&preset.name, radius);
+        }
+        next = Some(&kind.base.name);
+    }
+    ("helbing2000", radius)
 }
 
 /// Whether people of a kind feel nobody.
@@ -117,9 +152,13 @@ pub fn first_tracks(file: &ScenarioFile) -> Option<String> {
 
 /// The kind of the first people of a model.
 pub fn user_kind(replay: &Replay) -> Option<String> {
-    replay.scenario.items.iter().find_map(|item| match item {
-        Item::Agents(decl) if decl.recorded.is_some() => Some(decl.kind.name.clone()),
-        Item::Group(decl) if decl.recorded.is_some() => Some(decl.kind.name.clone()),
+    kind_of_user(&replay.scenario).map(str::to_owned)
+}
+
+fn kind_of_user(file: &ScenarioFile) -> Option<&str> {
+    file.items.iter().find_map(|item| match item {
+        Item::Agents(decl) if decl.recorded.is_some() => Some(decl.kind.name.as_str()),
+        Item::Group(decl) if decl.recorded.is_some() => Some(decl.kind.name.as_str()),
         _ => None,
     })
 }

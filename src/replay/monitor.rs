@@ -12,7 +12,7 @@ use crate::compile::study::World;
 use crate::engine::cell::Reading;
 use crate::engine::given::{averaged, judge};
 use crate::engine::{PreparedWorld, Threads};
-use crate::model::AgentId;
+use crate::model::{AgentId, Parameter};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What one instant came to.
@@ -22,6 +22,8 @@ pub struct Judged {
     pub instant: Instant,
     /// Whether each property holds; `None` where that is unresolved.
     pub truths: Vec<Option<bool>>,
+    /// Twice the mean radius of the user, m; `None` where the people of the model cannot start.
+    pub(super) reach: Option<f64>,
 }
 
 /// What each instant came to, in their order.
@@ -35,19 +37,27 @@ pub fn monitor(
     threads: &Threads,
 ) -> Result<Vec<Judged>, Vec<Diagnostic>> {
     let one = |instant: &Instant| {
-        let truths = match replay.study_at(*instant) {
+        let (truths, reach) = match replay.study_at(*instant) {
             Ok(study) => {
                 let targets = targets(&study);
                 let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
-                let world = targets.first().and_then(|target| study.worlds.get(target.world));
-                world.map_or_else(Vec::new, |world| happened(replay, *instant, (world, &columns), beyond))
+                match targets.first().and_then(|target| study.worlds.get(target.world)) {
+                    Some(world) => {
+                        let agents = &world.scenario.agents;
+                        let radius = agents
+                            .get(replay.place_of_user(agents))
+                            .map_or(0.0, |agent| agent.body[Parameter::Radius].mean());
+                        (happened(replay, *instant, (world, &columns), beyond), Some(2.0 * radius))
+                    }
+                    None => (Vec::new(), None),
+                }
             }
             Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => {
-                vec![None; replay.formulas.names.len()]
+                (vec![None; replay.formulas.names.len()], None)
             }
             Err(errors) => return Err(errors),
         };
-        Ok(Judged { instant: *instant, truths })
+        Ok(Judged { instant: *instant, truths, reach })
     };
     threads.map(instants, one).into_iter().collect()
 }

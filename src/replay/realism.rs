@@ -8,7 +8,7 @@
 use super::course::{Beyond, course};
 use super::evaluate::PREDICTED;
 use super::formulas::targets;
-use super::instants::Instant;
+use super::monitor::Judged;
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::base::math;
@@ -17,7 +17,7 @@ use crate::engine::cell::Series;
 use crate::engine::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
-use crate::model::{AgentId, Parameter};
+use crate::model::AgentId;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What is scored.
@@ -39,16 +39,16 @@ pub type PersonRealism = (u32, [f64; FEATURES.len()], u64);
 pub fn realism(
     replay: &Replay,
     kind: &str,
-    instants: &[Instant],
+    instants: &[Judged],
     seed: u64,
     (threads, drivers): (&Threads, &MakeDrivers),
 ) -> Result<Vec<PersonRealism>, Vec<Diagnostic>> {
     let own = replay.with_kind(kind)?;
-    let mut times: Vec<(u64, &[Instant])> = Vec::new();
-    for group in instants.chunk_by(|a, b| a.time == b.time) {
+    let mut times: Vec<(u64, &[Judged])> = Vec::new();
+    for group in instants.chunk_by(|a, b| a.instant.time == b.instant.time) {
         times.push((times.len() as u64, group));
     }
-    let one = |(number, group): &(u64, &[Instant])| {
+    let one = |(number, group): &(u64, &[Judged])| {
         let series = Series { seed, branch: (number & 0xffff) as u16 };
         at_one_time(&own, group, series, drivers)
     };
@@ -57,12 +57,12 @@ pub fn realism(
 
 fn at_one_time(
     replay: &Replay,
-    group: &[Instant],
+    group: &[Judged],
     series: Series,
     drivers: &MakeDrivers,
 ) -> Result<Vec<PersonRealism>, Vec<Diagnostic>> {
-    let Some(user) = group.first().copied() else { return Ok(Vec::new()) };
-    let study = match replay.study_at(user) {
+    let Some(Judged { instant: user, reach: Some(reach), .. }) = group.first() else { return Ok(Vec::new()) };
+    let study = match replay.study_at(*user) {
         Ok(study) => study,
         Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => return Ok(Vec::new()),
         Err(errors) => return Err(errors),
@@ -88,7 +88,6 @@ fn at_one_time(
             ways.push(way);
         }
     }
-    let reach = scenario.agents.first().map_or(0.0, |agent| 2.0 * agent.body[Parameter::Radius].mean());
     let followed = Followed { agents: &agents, ticks: &ticks };
     let found = sample(&prepared, &[], series, ROLLOUTS, followed).unwrap_or_default();
     let count = agents.len();
@@ -96,11 +95,11 @@ fn at_one_time(
         .paths
         .iter()
         .filter(|path| path.len() == count * ticks.len())
-        .map(|path| features(count, ticks.len(), (step, reach), |tick, k| path[tick * count + k]))
+        .map(|path| features(count, ticks.len(), (step, *reach), |tick, k| path[tick * count + k]))
         .collect();
-    let recorded = features(count, ticks.len(), (step, reach), |tick, k| ways[k][tick]);
+    let recorded = features(count, ticks.len(), (step, *reach), |tick, k| ways[k][tick]);
     let mut all = Vec::new();
-    for k in (0..count).filter(|k| group.iter().any(|one| one.person == persons[*k])) {
+    for k in (0..count).filter(|k| group.iter().any(|one| one.instant.person == persons[*k])) {
         let places = (0..recorded.len() / count.max(1)).map(|row| row * count + k);
         let (mut sums, mut steps) = ([0.0; 5], 0);
         for place in places {

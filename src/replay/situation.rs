@@ -9,6 +9,7 @@ use crate::base::geometry::Vec2;
 use crate::compile::study::Study;
 use crate::compile::{Files, Input, Seen, Setting, Sighting, examine};
 use crate::data::tracks::{PersonState, Recording, Velocity};
+use crate::model::Agent;
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -130,9 +131,9 @@ impl Replay {
         }
     }
 
-    /// The id of the user in the model.
-    pub(super) const fn user(&self) -> u32 {
-        self.cast.person
+    /// The place of the user among the agents of the model.
+    pub(super) fn place_of_user(&self, agents: &[Agent]) -> usize {
+        agents.iter().position(|agent| agent.start.seen.contains(&self.cast.person)).unwrap_or(0)
     }
 
     /// The model with those who are there at an instant.

@@ -8,7 +8,7 @@ use crate::gait;
 use crate::model::Scenario;
 use crate::replay::{
     CONSTANT, Evaluating, FEATURES, Fit, HORIZONS, Instant, LANGEVIN, PREDICTED, PersonRealism, Predicted,
-    eligible, evaluate, realism, user_kind,
+    eligible, evaluate, monitor, realism, user_kind,
 };
 use crate::report::evaluate::{
     Coverage, Displacement, Evaluated, EvaluatedKind, EvaluatedProperty, to_json, to_svg, to_text, write_csv,
@@ -28,7 +28,7 @@ pub(in crate::cli) fn run(arguments: &EvaluateCommand, colors: Colors) -> Exit {
 
 fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
     let Call { replay, threads, every, .. } = call;
-    let instants = eligible(replay, call.instants.clone(), *every, arguments.speed, PREDICTED);
+    let instants = eligible(replay, call.instants.clone(), arguments.speed, PREDICTED);
     if instants.is_empty() {
         let said = format!("nobody moves and is seen for the next {PREDICTED} s at any instant");
         return Err(complaint::argument(said, "choose other times, or a smaller `--speed`").into());
@@ -40,15 +40,15 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         kinds.extend(arguments.realism.then(|| LANGEVIN.to_owned()));
     }
     kinds.dedup();
-    let options =
-        Evaluating { trials: arguments.trials, seed: arguments.replayed.seed, beyond: arguments.beyond };
+    let options = Evaluating { trials: arguments.trials, seed: arguments.replayed.seed };
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let judged = monitor(replay, &instants, arguments.beyond, threads)?;
     let (mut found, mut realisms) = (Vec::new(), Vec::new());
     for kind in &kinds {
-        found.push(evaluate(replay, kind, &instants, &options, (threads, &drivers))?);
+        found.push(evaluate(replay, kind, &judged, &options, (threads, &drivers))?);
         realisms.push(if arguments.realism {
-            realism(replay, kind, &instants, options.seed, (threads, &drivers))?
+            realism(replay, kind, &judged, options.seed, (threads, &drivers))?
         } else {
             Vec::new()
         });

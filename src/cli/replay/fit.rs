@@ -32,7 +32,7 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
     let own = replay.with_kind(&kind)?;
     let counting =
         Counting { trials: arguments.trials, seed: arguments.seed, by_properties: !arguments.by.is_empty() };
-    let instants = eligible(&own, call.instants.clone(), own.recording.step(), arguments.speed, PREDICTED);
+    let instants = eligible(&own, call.instants.clone(), arguments.speed, PREDICTED);
     let cases = Cases::new(&own, &instants, counting, threads)?;
     if cases.persons.len() < FEWEST {
         return Err(few(&own, cases.persons.len()).into());
@@ -149,7 +149,7 @@ fn tested(
         None => replay,
     };
     let everything = replay.instants(call.every, (f64::NEG_INFINITY, f64::INFINITY));
-    let instants = eligible(&replay, everything, replay.recording.step(), arguments.speed, PREDICTED);
+    let instants = eligible(&replay, everything, arguments.speed, PREDICTED);
     let counting =
         Counting { trials: arguments.trials, seed: arguments.seed, by_properties: !arguments.by.is_empty() };
     let cases = Cases::new(&replay, &instants, counting, &call.threads).map_err(placeless)?;
