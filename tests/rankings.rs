@@ -293,3 +293,24 @@ fn forecasts_and_formats_know_values_and_routes() {
     let shown = place.call(&["show", "a.scn"]).out;
     assert!(shown.contains("route left (goes (3, 3.4) -> goal)"), "{shown}");
 }
+
+/// Of two options whose joint intervals do not meet, the lower one is beaten, also where the budget cuts the first round.
+#[test]
+fn statuses_follow_the_intervals() {
+    let mut beaten = 0;
+    for total in ["9", "15", "30", "48", "90", "400"] {
+        for by in ["P(F<=1 c.x == 1)", "E(if(c.x == 1, 1, 0) at end) in 0 .. 1"] {
+            let line = format!("rank p in 0, 0.5, 0.9, 1 by {by} within 0.1\n");
+            let result = &results(COINS, &line, &["--total-trials", total])[0];
+            let options = result["options"].as_array().unwrap();
+            let number = |option: &Value, field: &str| option[field].as_f64().unwrap();
+            let best = options.iter().map(|option| number(option, "low")).fold(0.0, f64::max);
+            for option in options {
+                let below = number(option, "high") < best;
+                assert!(!below || option["status"] == "beaten", "{total} {by}: {result}");
+                beaten += usize::from(option["status"] == "beaten");
+            }
+        }
+    }
+    assert!(beaten > 6, "{beaten}");
+}

@@ -44,6 +44,7 @@ pub(super) fn ranked(ranked: &RankOutcome, options: &[RankOption]) -> Ranking {
     let key = |arm: usize| (arm != choice.arm, ranked.tallies[arm].counts.trials == 0);
     let value = |arm: usize| if key(arm).1 { 0.0 } else { -ranked.values[arm].0 };
     order.sort_by(|&a, &b| key(a).cmp(&key(b)).then(value(a).total_cmp(&value(b))).then(a.cmp(&b)));
+    let best = ranked.values.iter().fold(f64::NEG_INFINITY, |best, (_, interval)| best.max(interval.low));
     let listed: Vec<RankedOption> = order
         .iter()
         .map(|&arm| {
@@ -55,10 +56,10 @@ pub(super) fn ranked(ranked: &RankOutcome, options: &[RankOption]) -> Ranking {
                 Status::Chosen
             } else if ranked.finished && choice.certified.contains(&arm) {
                 Status::Tied
-            } else if choice.open.contains(&arm) {
-                Status::Open
-            } else {
+            } else if choice.beaten.contains(&arm) || interval.high < best {
                 Status::Beaten
+            } else {
+                Status::Open
             };
             RankedOption {
                 label: options[arm].label.clone(),

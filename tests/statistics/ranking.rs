@@ -359,3 +359,54 @@ fn full_ranking() {
     gap_at_a_deadline(400);
     scores(300);
 }
+
+/// Where all arms are the best, none is beaten; with a threshold for the pairs with one best arm, 28 of 100 calls had one.
+#[test]
+fn no_arm_of_a_tie_is_beaten() {
+    for (arms, runs) in [(2, 200), (5, 100), (40, 40), (120, 20)] {
+        let with_beaten = |run: &u32| {
+            let race = Race::<Booleans>::new(arms, 0.1, 0.2, 32, Allocation::AllFailing);
+            let mut race = race.unwrap();
+            while !race.finished() {
+                for share in race.next_round().to_vec() {
+                    let outcome = |index| Outcome::from(uniform(61, *run, share.arm as u16, index) < 0.5);
+                    race.feed(share.arm, &(share.from..share.to).map(outcome).collect::<Vec<_>>()).unwrap();
+                }
+            }
+            !race.choice().beaten.is_empty()
+        };
+        let count = (0..runs).filter(with_beaten).count();
+        assert!(count * 10 <= runs as usize, "{count} of {runs} with {arms} arms, nominal 20 %");
+    }
+    // One that is clearly worse is.
+    let mut race = race(&[0.9, 0.89, 0.2], 62, 0, true, Allocation::AllFailing, u64::MAX);
+    assert_eq!(race.choice().beaten, [2]);
+}
+
+/// The gap before the end, where little happened: of trials that never failed, and of some that did.
+#[test]
+fn the_gap_of_a_few_trials_is_about_that_of_intervals() {
+    let held = |count: u64, trials: u64| -> Vec<Outcome> {
+        (0..trials).map(|k| Outcome::from(k * count / trials != (k + 1) * count / trials)).collect()
+    };
+    let values = |outcomes: &[Outcome]| -> Vec<Option<f64>> {
+        outcomes.iter().map(|one| Some(f64::from(u8::from(*one == Outcome::True)))).collect()
+    };
+    for (trials, counts, most) in [
+        (10, vec![10, 10], 0.48),
+        (10, vec![10, 10, 0, 0], 0.56),
+        (5, vec![5, 0, 0], 0.51),
+        (5, vec![5, 5], 0.71),
+        (20, vec![20, 18, 10], 0.28),
+    ] {
+        let mut race = Race::<Booleans>::new(counts.len(), 0.1, 0.05, 32, Allocation::AllFailing).unwrap();
+        let mut scores = Race::<Scores>::new(counts.len(), 0.1, 0.05, 32, Allocation::AllFailing).unwrap();
+        for (arm, count) in counts.iter().enumerate() {
+            race.feed(arm, &held(*count, trials)).unwrap();
+            scores.feed(arm, &values(&held(*count, trials))).unwrap();
+        }
+        let (gap, other) = (race.choice().gap, scores.choice().gap);
+        assert!(gap <= most, "{gap} of {counts:?} in {trials}");
+        assert!((gap - other).abs() < 2e-6, "{gap} {other}");
+    }
+}

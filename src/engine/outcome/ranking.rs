@@ -39,7 +39,7 @@ pub enum Status {
     Chosen,
     /// It carries the same certificate as the choice: it, too, is at most the wanted loss worse than the best.
     Tied,
-    /// Shown to be worse than another option, which led when that was shown.
+    /// Shown to be worse than another option, by paired trials or by the intervals of the two.
     Beaten,
     /// Neither: it may be the best by no more than the certified gap, and may be much worse.
     Open,

@@ -21,6 +21,17 @@ pub(super) fn bets() -> [f64; BETS] {
     bets
 }
 
+/// Gaps from which on bets are larger.
+const WIDE: f64 = 0.25;
+
+/// The bets on a gap. Where it is wide less can be lost in a trial, so they are larger: each factor `1 + bet * (gap - d)` is
+/// still at least the one of a smaller gap, for each difference d.
+pub(super) fn bets_on(gap: f64, epsilon: f64, bets: &[f64; BETS]) -> [f64; BETS] {
+    let least = math::at_least(epsilon, WIDE);
+    let scale = if gap > least { (1.0 - least) / math::at_least(1.0 - gap, 1e-6) } else { 1.0 };
+    bets.map(|bet| bet * scale)
+}
+
 /// Logarithm of the number of bets: between the mean and the highest of them.
 const LN_BETS: f64 = 2.484_906_649_788_000_4;
 
@@ -105,7 +116,7 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    /// For a gap, with the bets of the mixture. Each factor lies in [0.05, 3]. The loops are vector code.
+    /// For a gap, with the bets on it. Each factor is at least 0.05. The loops are vector code.
     pub(super) fn new(bets: &[f64; BETS], gap: f64) -> Self {
         let of = |d: f64| {
             let mut logs = [0.0; BETS];

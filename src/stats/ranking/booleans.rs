@@ -1,7 +1,7 @@
 //! Boolean outcomes as bitsets by trial index; a pair is compared by counting bits.
 
 use super::Table;
-use super::bet::{BETS, Factors, bets, log_mean, log_mean_below, log_mean_near, reaches};
+use super::bet::{BETS, Factors, bets, bets_on, log_mean, log_mean_below, log_mean_near, reaches};
 use crate::stats::Outcome;
 use std::cmp::Ordering;
 
@@ -30,6 +30,7 @@ struct Pair {
 pub struct Booleans {
     arms: Vec<Arm>,
     pairs: Vec<Pair>,
+    epsilon: f64,
     bets: [f64; BETS],
     /// Bets on a gap of 0 and of epsilon.
     factors: [Factors; 2],
@@ -94,6 +95,7 @@ impl Table for Booleans {
     fn new(arms: usize, epsilon: f64) -> Self {
         let bets = bets();
         Self {
+            epsilon,
             bets,
             arms: vec![Arm::default(); arms],
             pairs: vec![Pair::default(); arms * arms],
@@ -202,7 +204,7 @@ impl Table for Booleans {
     }
 
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
-        let factors = Factors::new(&self.bets, gap);
+        let factors = Factors::new(&bets_on(gap, self.epsilon, &self.bets), gap);
         rivals.iter().fold(f64::INFINITY, |least, rival| {
             let pair = self.pair(*rival, leader);
             log_mean_below(&self.logs(pair, leader, &factors), least)

@@ -155,7 +155,8 @@ impl Each {
                 arm = *other;
             }
         }
-        let open = (0..k).filter(|other| *other != arm && ends[*other].1 > ends[leader].0).collect();
-        Choice { arm, gap: gap_of(arm), open, certified }
+        let (open, beaten) =
+            (0..k).filter(|other| *other != arm).partition(|other| ends[*other].1 > ends[leader].0);
+        Choice { arm, gap: gap_of(arm), open, beaten, certified }
     }
 }

@@ -47,8 +47,11 @@ pub struct Choice {
     /// The mean of the chosen arm is within this of the best mean, with error at most delta; 1 if nothing
     /// is certified, and possible before the end only for races.
     pub gap: f64,
-    /// Other arms that are not known to be worse than the leader.
+    /// Other arms that are still in the race: they were not dropped for being worse than a leader.
     pub open: Vec<usize>,
+    /// Arms that are worse than another, jointly with error at most delta: however many arms are the best, none of them
+    /// is here.
+    pub beaten: Vec<usize>,
     /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best. Of very many
     /// near the best not all are looked at.
     pub certified: Vec<usize>,

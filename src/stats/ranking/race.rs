@@ -7,6 +7,10 @@
 //! probability at most delta/(k - 1), and there are k - 1 rivals. Chains of eliminations are harmless, and
 //! so is adaptive sampling: every trial exists before it is looked at, and the bound holds for all prefixes.
 //!
+//! At a deadline K(b, a; e) is asked for gaps e above epsilon, with larger bets where e is wide: its factors still rise with
+//! e (`bet::bets_on`). So a gap that is too small needs, like a false stop, that K of the true gap reaches the threshold at
+//! some time, and all of these together have the same bound.
+//!
 //! For the same reason a rival need not be tried as often as the leader. Were its missing trials the best there are, K would
 //! only be smaller; so what K reaches with them, it reaches in truth, at no further risk. A leader that hardly ever fails
 //! is certified by its own trials.
@@ -276,6 +280,12 @@ impl<T: Table> Race<T> {
         let most = if certified.contains(&arm) { math::at_most(self.epsilon, 1.0) } else { 1.0 };
         let gap = self.gap_below(arm, most);
         let open = live.into_iter().filter(|other| *other != arm).collect();
-        Choice { arm, gap, open, certified }
+        // Where all arms are the best, each of k (k - 1) pairs can make a false label; one that is dropped is not shown to
+        // be worse by that alone.
+        let jointly = self.threshold + math::ln(self.arms as f64);
+        let (table, leader) = (&mut self.table, self.leader);
+        let is_beaten = |other: &usize| *other != arm && table.passes(*other, leader, jointly).0;
+        let beaten = (0..self.arms).filter(is_beaten).collect();
+        Choice { arm, gap, open, beaten, certified }
     }
 }

@@ -1,13 +1,13 @@
 //! Scores in [0, 1] by trial index; a pair keeps the capital of each bet.
 
 use super::Table;
-use super::bet::{BETS, ROUNDING, bets, log_mean, log_mean_below, log_mean_near};
+use super::bet::{BETS, ROUNDING, bets, bets_on, log_mean, log_mean_below, log_mean_near};
 use crate::base::math;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// Factors of a product before its logarithm is taken: each lies in [0.05, 3], so sixteen stay far from
-/// the ends of the doubles.
+/// Factors of a product before its logarithm is taken: each lies between 0.05 and two million, so sixteen stay far
+/// from the ends of the doubles.
 const CHUNK: u64 = 16;
 
 /// Scores of one arm, as the least and the greatest they can be.
@@ -40,6 +40,7 @@ impl Scores {
     /// is 1.
     fn add(&self, logs: &mut [f64; BETS], rival: usize, leader: usize, gap: f64, (from, to): (u64, u64)) {
         let (b, a) = (&self.arms[rival].greatest, &self.arms[leader].least);
+        let bets = bets_on(gap, self.epsilon, &self.bets);
         let mut start = from;
         while start < to {
             let lattice = (start / CHUNK + 1) * CHUNK;
@@ -47,7 +48,7 @@ impl Scores {
             let mut products = [1.0; BETS];
             for t in start as usize..end as usize {
                 let excess = gap - (b.get(t).copied().unwrap_or(1.0) - a[t]);
-                for (product, bet) in products.iter_mut().zip(&self.bets) {
+                for (product, bet) in products.iter_mut().zip(&bets) {
                     *product *= 1.0 + bet * excess;
                 }
             }
