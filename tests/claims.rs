@@ -126,7 +126,7 @@ fn lost_paths_of_splitting_are_in_neither_reading() {
 }
 
 #[test]
-fn splitting_is_refused_where_it_is_above_the_bound_beside_it() {
+fn splitting_is_kept_above_the_bound_beside_it_and_never_contradicts_it() {
     let properties =
         "estimate P(F (gambler.wealth >= 6)) by splitting(replicas = 20, runs = 4, plain = 300)\n";
     let place = Place::new(&[("a.scn", GAMBLER), ("a.bltl", properties)]);
@@ -135,13 +135,22 @@ fn splitting_is_refused_where_it_is_above_the_bound_beside_it() {
         let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--seed", &seed.to_string()];
         let result = &place.call(&words).json()["results"][0];
         let splitting = &result["splitting"];
-        let bound = number(splitting, "plain_bound");
-        assert!(number(result, "estimate") <= bound, "{result:#}");
+        let (bound, high) = (number(splitting, "plain_bound"), number(splitting, "plain_high"));
+        let estimate = number(splitting, "estimate");
+        let certified = result["certifies"].as_str().unwrap();
+        let end = |sign: &str| -> Option<f64> {
+            certified.split_once(&format!(") {sign} "))?.1.split(',').next()?.parse().ok()
+        };
+        let (least, most) = (end(">=").unwrap_or(0.0), end("<=").unwrap_or(1.0));
+        assert!(least <= most, "{certified}");
         // Above the bound of one side, at 95 %, and within the interval of both, at 99 %.
-        if (bound..number(splitting, "plain_high")).contains(&number(splitting, "estimate")) {
-            between += 1;
-            assert_eq!(splitting["agrees"], false);
-            assert!(result["warnings"].to_string().contains("exclude at 95 %"), "{result:#}");
+        between += usize::from(estimate > bound && estimate <= high);
+        if estimate >= number(splitting, "plain_low") && estimate <= high {
+            assert_eq!((number(result, "estimate"), &splitting["agrees"]), (estimate, &true.into()));
+            assert!(least <= estimate && estimate <= most, "{result:#}");
+        } else {
+            assert_eq!((&result["estimate"], &splitting["agrees"]), (&Value::Null, &false.into()));
+            assert_eq!(result["method"]["name"], "clopper_pearson");
         }
     }
     assert!(between > 0, "no seed shows it");

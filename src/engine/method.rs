@@ -4,9 +4,9 @@ use super::outcome::Method;
 use super::procedure::Procedure;
 use crate::compile::methods::PLANNED_TRIALS;
 use crate::compile::study::{Ask, Measure, MeasureKind};
-use crate::stats::Chosen;
 use crate::stats::procedures::PROBABILITY_WITHIN;
 use crate::stats::splitting;
+use crate::stats::{Chosen, Coverage};
 
 /// Names and numbers, in the order of a report.
 type Numbers = Vec<(&'static str, f64)>;
@@ -64,6 +64,12 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
         }
     };
     method(name, &numbers)
+}
+
+/// The interval of the plain trials of splitting, where it is the result.
+pub(super) fn plain(coverage: Coverage, trials: u64, delta: f64) -> Method {
+    let name = if coverage == Coverage::FixedSize { "clopper_pearson" } else { "confidence_sequence" };
+    method(name, &[("trials", trials as f64), ("delta", delta)])
 }
 
 fn method(name: &str, numbers: &[(&'static str, f64)]) -> Method {

@@ -41,28 +41,27 @@ impl Answers<'_> {
         self.lament_one(&mut result, prepared, &found.plain, column);
         let name = words::decided(&query.said);
         // From above the only statement that holds without a condition is that of the plain trials.
-        result.certifies = format!(
-            "{name} <= {}, error at most {} (from the plain trials alone)",
-            words::number(words::at_most(found.bound)),
-            words::error(rule.delta)
-        );
-        if counts.trials == 0 || found.bound >= 1.0 {
-            result.certifies = String::new();
-        }
-        if let Some(spread) =
-            found.spreads.map(|[low, _]| low).filter(|s| 0.0 < s.floor && s.floor <= found.bound)
-        {
-            let above = std::mem::take(&mut result.certifies);
-            let joint = if above.is_empty() { "" } else { "; " };
-            result.certifies = format!(
-                "{above}{joint}{name} >= {}, error at most {} (from the runs, which are unbiased)",
-                words::number(words::at_least(spread.floor)),
-                words::error(rule.delta)
+        let above = found.above();
+        let floor = found.spreads.map_or(0.0, |[low, _]| low.floor);
+        // Of two bounds that contradict each other one is wrong, and nothing says which.
+        let is_clear = floor <= above;
+        let bound = (counts.trials > 0 && above < 1.0 && is_clear).then_some(above);
+        let floor = (0.0 < floor && is_clear).then_some(floor);
+        let said = |sign: &str, value: f64, from: &str| {
+            let (number, error) = (words::number(value), words::error(rule.delta));
+            format!("{name} {sign} {number}, error at most {error} ({from})")
+        };
+        let parts = [
+            bound.map(|bound| said("<=", words::at_most(bound), "from the plain trials alone")),
+            floor.map(|floor| said(">=", words::at_least(floor), "from the runs, which are unbiased")),
+        ];
+        result.certifies = parts.into_iter().flatten().collect::<Vec<_>>().join("; ");
+        if !is_clear {
+            result.warnings.push(
+                "the bound of the plain trials is below the bound of the runs: one of them is wrong, so neither is certified"
+                    .to_owned(),
             );
         }
-        let bound = (counts.trials > 0 && found.bound < 1.0).then_some(found.bound);
-        let floor =
-            found.spreads.map(|[low, _]| low.floor).filter(|floor| 0.0 < *floor && *floor <= found.bound);
         // Each end may be wrong with its own error.
         let ends = u8::from(floor.is_some()) + u8::from(bound.is_some());
         result.certificate = (ends > 0).then(|| Certificate {
@@ -89,10 +88,7 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
         deviation: math::at_least(low.deviation, high.deviation),
         ..low
     });
-    // An estimate above the bound that is certified beside it would be a contradiction, so that it is refused too.
-    let above = |s: &Spread| s.mean > found.bound || s.mean > plain.high;
-    let over = found.spreads.is_some_and(|both| both.iter().any(above));
-    let agrees = !over && found.spreads.is_none_or(|both| both.iter().all(|s| plain.low <= s.mean));
+    let agrees = found.spreads.is_none_or(|both| both.iter().all(|s| plain.holds(s.mean)));
     let sampled = found.plain.counts.trials > 0;
     result.rare = Some(Rare {
         runs: spread.map_or(0, |s| s.runs),
@@ -130,19 +126,18 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
         }
         _ => {
             let counts = found.plain.counts;
-            result.estimate = (counts.trials > 0).then(|| procedure::share(counts));
+            let is_refused = !agrees || spread.is_some() && found.blind;
+            // The share of the plain trials in place of refused estimates would bias their mean over seeds.
+            result.estimate = (counts.trials > 0 && !is_refused).then(|| procedure::share(counts));
+            if is_refused {
+                result.method = method::plain(plain.coverage, counts.trials, DISAGREEMENT);
+            }
             result.low = if sampled { plain.low } else { 0.0 };
             result.high = if sampled { plain.high } else { 1.0 };
             result.interval =
                 format!("{}, of the plain trials", words::interval(plain.coverage, DISAGREEMENT));
             let stopped = found.stop == Stop::Cap || found.stop.is_early();
             result.warnings.push(match spread {
-                // The bound is that of one side, at the error that was asked for.
-                Some(spread) if over && spread.mean <= plain.high => format!(
-                    "{DISAGREES}: splitting estimates {}, which the plain trials exclude at {}: refused; use more plain trials (`plain`) to exclude chance",
-                    words::number(spread.mean),
-                    words::level(delta)
-                ),
                 Some(spread) if !agrees => format!(
                     "{DISAGREES}: splitting estimates {}, which the plain trials exclude at {}: refused; the robustness does not rise on most paths to the event",
                     words::number(spread.mean),

@@ -59,6 +59,16 @@ pub(super) struct Found {
     stop: Stop,
 }
 
+impl Found {
+    /// The upper bound that is certified: that of the wider interval where the estimate is between the two, so that no
+    /// estimate is above it. A bound that is higher is wrong less often.
+    fn above(&self) -> f64 {
+        let is_over = |spread: &Spread| spread.mean > self.bound && spread.mean <= self.interval.high;
+        let over = self.spreads.is_some_and(|both| both.iter().any(is_over));
+        if over { self.interval.high } else { self.bound }
+    }
+}
+
 /// What is asked.
 pub(super) struct Question<'s> {
     query: &'s Query,
