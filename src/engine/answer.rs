@@ -115,8 +115,13 @@ impl Answers<'_> {
             Ask::Check { beside, .. } => beside,
             _ => 0.0,
         };
-        if let Some((interval, coverage, error)) = entry.procedure.interval(counts, beside) {
+        let least = match prepared.columns[measure.target.column] {
+            Root::Metric(term) if prepared.is_never_early(term) => 0.0,
+            _ => f64::NEG_INFINITY,
+        };
+        if let Some((mut interval, coverage, error)) = entry.procedure.interval(counts, beside) {
             beside = error;
+            interval.low = interval.low.max(least);
             // Where no trial is resolved the middle of what is legal is no estimate.
             result.estimate = Some(interval.estimate)
                 .filter(|middle| counts.unresolved < counts.trials && !middle.is_nan());
@@ -146,7 +151,7 @@ impl Answers<'_> {
                     }
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
-                if says_something(&query.ask, interval.low, interval.high) {
+                if says_something(&query.ask, least, (interval.low, interval.high)) {
                     result.certifies = format!("{measured} {claim}, error at most {}", words::error(error));
                     result.certificate = Some(between(&result, error));
                 }
@@ -173,13 +178,13 @@ impl Answers<'_> {
                 Some(Statement { claim, error }) => {
                     Some(Certificate { claim: Certified::Decided(claim), error })
                 }
-                None if !says_something(&query.ask, result.low, result.high) => None,
+                None if !says_something(&query.ask, least, (result.low, result.high)) => None,
                 None => Some(between(&result, beside)),
             };
             result.certifies = match entry.procedure.statement() {
                 Some(statement) => words::quantile(&query.said, *threshold, &statement)
                     .unwrap_or_else(|| words::statement(&measured, &statement, &result.unit)),
-                None if !says_something(&query.ask, result.low, result.high) => String::new(),
+                None if !says_something(&query.ask, least, (result.low, result.high)) => String::new(),
                 None => format!(
                     "{measured} in {}, error at most {}",
                     words::ends(result.low, result.high, &result.unit),
@@ -197,6 +202,8 @@ impl Answers<'_> {
         let cut = was_cut(prepared, measure.target.column, &entry.tally);
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = entry.procedure.distribution().filter(|_| known);
+        let quantiles = result.distribution.iter_mut().flat_map(|found| &mut found.quantiles);
+        quantiles.for_each(|one| one.value.low = one.value.low.max(least));
         Self::tell(&mut result, prepared, &entry.tally, measure.target.column);
         self.note_odd(&mut result, &[(prepared, &entry.tally)]);
         self.lament_one(&mut result, prepared, &entry.tally, measure.target.column);
@@ -360,7 +367,7 @@ impl Answers<'_> {
         };
         let labels = [label(&settings[0]), label(&settings[1])];
         let name = measured_words(query, first, joined.clipped);
-        if says_something(&query.ask, result.low, result.high) {
+        if says_something(&query.ask, f64::NEG_INFINITY, (result.low, result.high)) {
             result.certifies = format!(
                 "{name} under {} less that under {} in {}, error at most {}",
                 labels[0],
@@ -469,10 +476,10 @@ fn legal(ask: &Ask) -> (f64, f64) {
     }
 }
 
-/// Whether an interval excludes anything that can be.
-fn says_something(ask: &Ask, low: f64, high: f64) -> bool {
-    let (least, most) = legal(ask);
-    low > least || high < most
+/// Whether an interval excludes anything that can be; nothing is below `least`.
+fn says_something(ask: &Ask, least: f64, (low, high): (f64, f64)) -> bool {
+    let (lowest, most) = legal(ask);
+    low > lowest.max(least) || high < most
 }
 
 /// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation

@@ -36,7 +36,8 @@ pub(super) fn decider(
     let agent = name(id)?;
     let place = place_of(search, id)?;
     let sides = search.compared();
-    let compared = sides.and_then(|(a, b)| {
+    // A comparison with the present time says no more than when it was made: `done(a)`.
+    let compared = sides.filter(|(_, b)| !matches!(b, Num::Time)).and_then(|(a, b)| {
         let dimension = dimension(scenario, a).or_else(|| dimension(scenario, b))?;
         let [value, against] = search.values(&[a.clone(), b.clone()])[..] else { return None };
         let is_fixed = matches!(b, Num::Constant(_));

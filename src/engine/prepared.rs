@@ -3,13 +3,14 @@
 use super::observer::Observer;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
+use crate::compile::dimension::Dimension;
 use crate::compile::study::{Origins, Root, Study, Texts, World};
 use crate::kernel::driver::{Drivers, MakeDrivers};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program, Readings, Run};
 use crate::logic::{
-    AtomId, Invalid, Monitor, Needs, Node, NodeId, Part, Robustness, SignalId, SignalMonitor,
-    SignalRobustness, Tree, leaves,
+    AtomId, Invalid, Monitor, Needs, Node, NodeId, Operation, Part, Robustness, SignalId, SignalMonitor,
+    SignalRobustness, Term, TermId, Tree, leaves,
 };
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
@@ -134,6 +135,23 @@ impl PreparedWorld {
     /// Numbers observed in each state.
     pub(super) fn signals(&self) -> &[Num] {
         &self.signals
+    }
+
+    /// Whether a number is made of times that count from 0, so that it is never below 0.
+    pub(super) fn is_never_early(&self, term: TermId) -> bool {
+        let of = |term: &TermId| self.is_never_early(*term);
+        match &self.tree.terms[term.0 as usize] {
+            Term::TimeUntil(_) | Term::Abs(_) => true,
+            Term::Constant(value) => *value >= 0.0,
+            Term::Signal(signal) => match &self.signals[signal.0 as usize] {
+                Num::Time => true,
+                Num::Of(field, _) => field.dimension() == Some(Dimension::TIME),
+                Num::OfTwo(pair, ..) => pair.dimension() == Some(Dimension::TIME),
+                _ => false,
+            },
+            Term::Combine(operation, a, b) => *operation != Operation::Subtract && of(a) && of(b),
+            Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => of(a),
+        }
     }
 
     /// What watches a column.

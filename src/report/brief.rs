@@ -29,7 +29,10 @@ fn row(result: &QueryResult) -> Vec<Cell> {
     let (word, paint) = word(result);
     let query = one_line(&result.asked.text);
     let asked = query.strip_prefix(word).map_or(query.as_str(), str::trim_start);
-    let (estimate, interval) = result.value().map(|value| printed(result, &value)).unwrap_or_default();
+    let (mut estimate, interval) = result.value().map(|value| printed(result, &value)).unwrap_or_default();
+    if let Some(of) = result.of.as_ref().filter(|_| !estimate.is_empty()) {
+        estimate = format!("{of}: {estimate}");
+    }
     let choice = result.rank.as_ref().map(|ranking| ranking.choice.as_deref().unwrap_or("no choice"));
     vec![
         Cell::left(word).paint(paint),

@@ -2,7 +2,7 @@
 //! column of its own.
 //!
 //! Columns of settings hold their unit in the header, `width (m)`; a setting written in two units has two columns. Numbers of
-//! the procedures have a column each. What is infinite is `inf`, what is unknown is empty. Everything but `elapsed (s)` is a
+//! the procedures have a column each. Where a name is taken, it stands behind `method` or `set`: `method trials`. What is infinite is `inf`, what is unknown is empty. Everything but `elapsed (s)` is a
 //! function of input, seed and version.
 
 use super::phrase::one_line;
@@ -55,7 +55,14 @@ pub fn render(run: &CallResult) -> String {
     let mut table = csv::Writer::from_writer(Vec::new());
     // Writing into memory does not fail.
     let header = COLUMNS.iter().map(|(name, _)| (*name).to_owned());
-    let _ = table.write_record(header.chain(methods.iter().cloned()).chain(settings.iter().cloned()));
+    let mut names: Vec<String> = header.collect();
+    for (prefix, more) in [("method", &methods), ("set", &settings)] {
+        for name in more {
+            let is_taken = names.contains(name);
+            names.push(if is_taken { format!("{prefix} {name}") } else { name.clone() });
+        }
+    }
+    let _ = table.write_record(names);
     for row in &rows {
         let of_method = |name: &String| {
             let found = row.result.method.numbers.iter().find(|(known, _)| known == name);

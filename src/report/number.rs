@@ -9,6 +9,8 @@ use crate::stats::Estimate;
 
 /// Below this all numbers of an interval are written with an exponent.
 const SMALL: f64 = 1e-4;
+/// The width of an interval, as a share of its largest number, below which it is rounding.
+const NARROW: f64 = 1e-9;
 /// Significant digits of a number without an uncertainty.
 const EXACT: usize = 6;
 /// Seconds of a minute and of an hour.
@@ -34,8 +36,7 @@ enum Round {
 /// Prints a number with its interval. Numbers beyond the horizon read `> 30`.
 pub fn interval(value: &Interval, horizon: Option<f64>) -> Printed {
     let Interval { estimate, low, high } = *value;
-    let largest =
-        [estimate, low, high].into_iter().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
+    let largest = largest(value);
     let decimals = decimals(value);
     let show = |x: f64, round: Round| {
         if x == f64::INFINITY {
@@ -49,8 +50,8 @@ pub fn interval(value: &Interval, horizon: Option<f64>) -> Printed {
             _ if x == 0.0 => "0".to_owned(),
             _ if largest < SMALL => scientific(x, round),
             Some(decimals) => fixed(x, decimals, round),
-            // Without a width six digits serve, rounded outwards where they are not exact.
-            None if plain(x).parse() == Ok(x) => plain(x),
+            // Without a width six digits serve, rounded outwards where they are not exact but for rounding.
+            None if plain(x).parse().is_ok_and(|y: f64| (x - y).abs() <= NARROW * largest) => plain(x),
             None => match round {
                 Round::Nearest => plain(x),
                 outwards => fixed(x, (5 - leading(x).1).clamp(0, 12) as usize, outwards),
@@ -71,6 +72,12 @@ pub fn estimated(found: &Estimate, unit: &str) -> String {
     format!("{}{unit} {}{unit}", printed.estimate, printed.interval)
 }
 
+/// The largest magnitude of the finite numbers.
+fn largest(value: &Interval) -> f64 {
+    let Interval { estimate, low, high } = *value;
+    [estimate, low, high].into_iter().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
 /// Decimal places that an interval supports; `None` where it has no width.
 fn decimals(value: &Interval) -> Option<usize> {
     let Interval { estimate, low, high } = *value;
@@ -80,7 +87,7 @@ fn decimals(value: &Interval) -> Option<usize> {
         (false, true) if estimate.is_finite() => high - estimate,
         _ => return None,
     };
-    if half <= 0.0 || !half.is_finite() {
+    if half <= NARROW * largest(value) || !half.is_finite() {
         return None;
     }
     let (leading, exponent) = leading(half);
@@ -204,6 +211,11 @@ pub fn clock(seconds: f64) -> String {
     if hours > 0.0 { format!("{hours} h {rest}") } else { rest }
 }
 
+/// Events in a second: whole ones, and one significant digit below 1.
+pub fn rate(x: f64) -> String {
+    if x < 0.95 { rounded(x, 0) } else { count(x.round() as u64) }
+}
+
 /// A duration: `21 ms`, `1.32 s`, `2 min 5 s`.
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
@@ -244,6 +256,18 @@ mod tests {
         assert_eq!(printed(0.0, 0.0, 3.688_9e-6), "0 [0, 3.7e-6]");
         assert_eq!(printed(1e-5, 6.19e-6, 8.767e-5), "1.0e-5 [6.1e-6, 8.8e-5]");
         assert_eq!(printed(0.0, 0.0, 0.008), "0 [0, 0.008]");
+    }
+
+    #[test]
+    fn a_width_of_rounding_gives_no_digits() {
+        assert_eq!(printed(19.0, 18.999_999_999_999, 19.000_000_000_001), "19 [19, 19]");
+        assert_eq!(printed(0.3, 0.1 + 0.2, 0.3), "0.3 [0.3, 0.3]");
+        assert_eq!(printed(1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0), "0.333333 [0.333333, 0.333334]");
+        assert_eq!(printed(19.0, 18.999_999, 19.000_001), "19.0000000 [18.9999990, 19.0000010]");
+        assert_eq!(
+            [0.0, 6.0 / 48.55, 0.007, 0.96, 3.4, 1234.5].map(rate),
+            ["0", "0.1", "0.007", "1", "3", "1,235"]
+        );
     }
 
     #[test]

@@ -125,3 +125,48 @@ fn several_formats_in_one_call() {
         assert!(said.code == Some(2) && said.err.contains(reason), "{words:?}: {}", said.err);
     }
 }
+
+#[test]
+fn no_two_columns_of_a_table_have_one_name() {
+    let place = Place::new(&[
+        ("a.scn", &format!("{SMALL}\nparam steps = 2 in 1 .. 3\nparam delta = 2 in 1 .. 3\n")),
+        ("a.bltl", "estimate Q(0.5, time_until(contact(user))) by fixed(trials = 4)\n"),
+    ]);
+    let words =
+        ["check", "a.scn", "a.bltl", "-q", "--format", "csv", "--set", "steps=1,2", "--set", "delta=1,2"];
+    let said = place.call(&words);
+    let header: Vec<&str> = said.out.lines().next().unwrap().split(',').collect();
+    let names: std::collections::BTreeSet<&str> = header.iter().copied().collect();
+    assert_eq!(names.len(), header.len(), "{header:?}");
+    for name in ["trials", "method trials", "steps", "set steps", "delta", "set delta"] {
+        assert!(names.contains(name), "{name}: {header:?}");
+    }
+    assert!(said.out.lines().skip(1).all(|row| row.split(',').count() >= header.len()), "{}", said.out);
+}
+
+#[test]
+fn times_are_not_below_zero_and_figures_have_a_name() {
+    let place = Place::new(&[
+        ("a.scn", SMALL),
+        (
+            "a.bltl",
+            "estimate Q(0.1, 0.5, time_until(contact(user))) by fixed(trials = 4)\n\
+             estimate Q(0.5, time_until(contact(user)) - 1 s) by fixed(trials = 4)\n\
+             estimate Q(0.5, 2 * max<=1 s time_to_collision(user, crowd[1])) by fixed(trials = 4)\n\
+             check Q(0.9, time_until(contact(user))) >= 0.5 s\n",
+        ),
+    ]);
+    let words = ["check", "a.scn", "a.bltl", "-q"];
+    let json = place.call(&[&words[..], &["--format", "json"]].concat()).json();
+    let results = json["results"].as_array().unwrap();
+    let low = |k: usize| results[k]["low"].as_f64();
+    assert_eq!([low(0), low(1), low(3)], [Some(0.0), Some(0.0), Some(0.0)], "{json:#}");
+    assert_eq!(low(2), None, "a difference of times may be negative");
+    for result in &results[..2] {
+        assert_eq!(result["distribution"]["quantiles"][0]["low"], 0.0, "{result}");
+        // That a time is not below 0 is no finding.
+        assert_eq!(result["certifies"], "", "{result}");
+    }
+    let brief = place.call(&[&words[..], &["--brief"]].concat()).out;
+    assert!(brief.contains("  P(time_until(contact(user)) < 0.5 s): "), "{brief}");
+}

@@ -372,3 +372,18 @@ check P(G<=2 s (min(gap(a) for a in others(me)) > 4 m)) >= 0.5\n";
 fn round(length: f64) -> f64 {
     (length * 100.0).round() / 100.0
 }
+
+/// A time that is compared with the present one is none that decided.
+#[test]
+fn a_route_is_done_or_not() {
+    let scenario = "horizon = 6 s\nstep = 0.1 s\nkind p: sfm preset smc1 { noise = 0 m/s  speed = 1 m/s }\n\
+        agent a: p { at = (1, 1); route = (3, 1) }\n";
+    let place = Place::new(&[
+        ("a.scn", scenario),
+        ("a.bltl", "check P(F<=1 s done(a)) >= 0.5\ncheck P(F<=6 s (done(a) & x(a) > 0 m)) >= 0.5\n"),
+    ]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q"]).out;
+    assert!(said.contains("`done(a)` is false: a at ("), "{said}");
+    assert!(said.contains("`done(a)` is true and `x(a) > 0 m` is true: a at ("), "{said}");
+    assert!(!said.contains("against") && !said.contains('∞'), "{said}");
+}

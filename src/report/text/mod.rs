@@ -11,7 +11,7 @@ mod sweep;
 pub(super) use block::{counts, moment, shown, trials, word};
 pub(super) use rows::printed;
 
-use super::number::{count, counted, duration};
+use super::number::{count, counted, duration, rate};
 use super::palette::{Paint, Palette};
 use crate::engine::outcome::{CallResult, QueryResult, Shortfall, Verdict};
 use std::fmt::Write as _;
@@ -103,7 +103,7 @@ fn summary(run: &CallResult, palette: Palette) -> String {
     let mut text = if parts.is_empty() { "no results".to_owned() } else { parts.join(", ") };
     let _ = write!(text, "; {} in {}", counted(trials, "trial"), duration(run.elapsed_s));
     if run.elapsed_s > 0.0 && trials > 0 {
-        let _ = write!(text, " ({} per second)", count((trials as f64 / run.elapsed_s).round() as u64));
+        let _ = write!(text, " ({} per second)", rate(trials as f64 / run.elapsed_s));
     }
     text
 }

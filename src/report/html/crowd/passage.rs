@@ -72,7 +72,7 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
     }
     if traces.len() > 1 {
         caption += &format!(
-            " Line: mean, band: range of those of {} that go on at that time.",
+            " Line: mean, band: range of {}; a trace that was stopped keeps its last number.",
             counted(traces.len() as u64, "trace")
         );
     }
@@ -87,10 +87,8 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
     let mut ends = Vec::new();
     for k in 0..=POINTS {
         let time = end * f64::from(k) / f64::from(POINTS);
-        let goes_on = |(trace, times): (&&Trace, &Vec<f64>)| {
-            (trace.end >= time).then(|| times.partition_point(|one| *one <= time) as f64)
-        };
-        let now: Vec<f64> = traces.iter().zip(&times).filter_map(goes_on).collect();
+        let so_far = |times: &Vec<f64>| times.partition_point(|one| *one <= time) as f64;
+        let now: Vec<f64> = times.iter().map(so_far).collect();
         means.push((time, now.iter().sum::<f64>() / now.len() as f64));
         let [low, high] = range(&now);
         ends.push((time, low, high));

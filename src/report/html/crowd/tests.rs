@@ -109,3 +109,23 @@ fn figures_of_thousands_stay_small() {
     let size: usize = found.iter().map(|figure| figure.svg.len()).sum();
     assert!(size < 500_000, "{size} bytes");
 }
+
+#[test]
+fn a_number_of_crossings_never_falls() {
+    let people = |count: usize, frames: usize| -> Vec<Walk> {
+        (0..count).map(|k| walk(k, frames, move |time| (time - 0.2 * k as f64, 0.0))).collect()
+    };
+    let mut second = trial(line("door", 0.55), &people(2, 51));
+    let first = trial(line("door", 0.55), &people(6, 25));
+    assert!(first.end < second.end);
+    second.scenario = Arc::clone(&first.scenario);
+    let found = figures(&[first, second]);
+    let heights: Vec<f64> = found[0]
+        .svg
+        .split("<polyline points=\"")
+        .skip(1)
+        .flat_map(|rest| rest.split('"').next().unwrap().split(' '))
+        .map(|point| point.split_once(',').unwrap().1.parse().unwrap())
+        .collect();
+    assert!(heights.len() > 100 && heights.is_sorted_by(|a, b| a >= b), "{heights:?}");
+}
