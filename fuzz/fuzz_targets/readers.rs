@@ -13,8 +13,8 @@ fuzz_target!(|text: &str| {
     let _ = read_batch(text);
     for format in Format::all() {
         for frames_per_second in [None, Some(25.0)] {
-            let _ = format.read(text, &Reading { frames_per_second });
-            let reading = Reading { frames_per_second };
+            let reading = Reading { frames_per_second, trial: None };
+            let _ = format.read(text, &reading);
             if let Ok(batches) = format.read_batches(text, &reading, Velocity::Seen) {
                 let _ = infer(&batches, &Inferring::default(), &mut ConstantVelocity);
             }
