@@ -248,34 +248,20 @@ mod tests {
         }
     }
 
-    /// The crate `cmaes` 0.2.2 searches with the same rules and weights: the median of the evaluations over 21 seeds is that of
-    /// the crate within a third.
+    /// The crate `cmaes` 0.2.2 searches with the same rules and weights. Its median of the evaluations over 21 seeds, which was
+    /// measured once, is ours within a third.
     #[test]
     fn a_search_takes_as_many_evaluations_as_another_implementation() {
         type Loss = fn(&[f64]) -> f64;
-        let median = |mut all: Vec<usize>| {
-            all.sort_unstable();
-            all[all.len() / 2] as f64
-        };
-        let ellipsoid = |x: &[f64]| x[0] * x[0] + 1e2 * x[1] * x[1] + 1e4 * x[2] * x[2];
-        let rosenbrock = |x: &[f64]| {
+        let ellipsoid: Loss = |x| x[0] * x[0] + 1e2 * x[1] * x[1] + 1e4 * x[2] * x[2];
+        let rosenbrock: Loss = |x| {
             let (a, b) = (x[1] - x[0] * x[0], 1.0 - x[0]);
             100.0 * a * a + b * b
         };
-        let losses: [Loss; 2] = [ellipsoid, rosenbrock];
-        for (loss, start) in losses.into_iter().zip([&[1.0, 1.0, 1.0][..], &[-1.0, 1.0]]) {
-            let theirs = |seed: u64| {
-                let options = cmaes::CMAESOptions::new(start.to_vec(), 0.5)
-                    .weights(cmaes::Weights::Positive)
-                    .fun_target(1e-10)
-                    .seed(seed);
-                let mut search = options.build(|x: &cmaes::DVector<f64>| loss(x.as_slice())).unwrap();
-                let found = search.run().overall_best.unwrap();
-                assert!(found.value <= 1e-10, "seed {seed}: {}", found.value);
-                search.function_evals()
-            };
-            let theirs = median((0..21).map(theirs).collect());
-            let ours = median((0..21).map(|seed| evaluations(loss, start, seed, 5000)).collect());
+        for (loss, start, theirs) in [(ellipsoid, &[1.0, 1.0, 1.0][..], 889.0), (rosenbrock, &[-1.0, 1.0], 762.0)] {
+            let mut all: Vec<usize> = (0..21).map(|seed| evaluations(loss, start, seed, 5000)).collect();
+            all.sort_unstable();
+            let ours = all[all.len() / 2] as f64;
             assert!((0.75..1.34).contains(&(ours / theirs)), "{ours} beside {theirs}");
         }
     }
