@@ -32,7 +32,8 @@ fn format(source: &Source, rule: Rule, diagnostics: Vec<Diagnostic>) -> Result<S
     }
     with_pairs(source, rule, |file| {
         let members = token::members(file);
-        lines::join(writer::write(&source.text, &members))
+        // A comment of several lines keeps its line ends, and they are all of one kind.
+        lines::join(writer::write(&source.text, &members)).replace("\r\n", "\n")
     })
 }
 
@@ -111,6 +112,14 @@ const d = 1  // apart
 ";
         assert_eq!(scenario(text), expected);
         assert_eq!(scenario(expected), expected);
+    }
+
+    #[test]
+    fn line_ends_are_of_one_kind() {
+        let text = "scenario \"A\" // one\n/* two\n   three */\nhorizon = 3 s\n\n// four\nstep = 1 s /* five\n  six */\n";
+        let formatted = scenario(text);
+        assert_eq!(scenario(&text.replace('\n', "\r\n")), formatted);
+        assert!(!formatted.contains('\r'), "{formatted:?}");
     }
 
     #[test]
