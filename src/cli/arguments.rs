@@ -16,7 +16,7 @@ use super::values::{
 use super::walk::WalkCommand;
 use crate::data::table::{FORMATS, TraceFormat};
 use crate::data::tracks::Velocity;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -153,7 +153,7 @@ pub(super) struct Check {
     pub(super) forecast: bool,
     /// Run the trials in shards: `local` (threads), `hq` (`HyperQueue`), `slurm`, `k8s` (prints a job for Kubernetes), or a
     /// command in which `{shard}`, `{count}`, `{last}`, `{plan}` and `{parts}` are replaced. Never changes a result.
-    #[arg(long, value_name = "ENGINE|COMMAND")]
+    #[arg(long, value_name = "ENGINE|COMMAND", value_parser = NonEmptyStringValueParser::new())]
     pub(super) launch: Option<String>,
     /// Folder of the parts that shards write; it is kept, so that a call can go on where another one ended.
     #[arg(long, value_name = "DIR", requires = "launch")]
@@ -227,7 +227,7 @@ pub(super) struct Simulate {
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) every: u64,
     /// Stop at this time instead of the horizon: `2.5s`; a number without a unit is in seconds.
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true, value_parser = parse_moment)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) until: Option<f64>,
     /// Keep only the trials in which the formula of a check is false (`violated`) or true (`satisfied`). Of several checks
     /// one is meant by the name of its property or its number: `violated=safe`.
@@ -236,6 +236,9 @@ pub(super) struct Simulate {
     /// Format of the table. By default the ending of the file shows it, and standard output is `csv`.
     #[arg(long, value_name = "FORMAT", value_parser = trace_formats())]
     pub(super) format: Option<&'static TraceFormat>,
+    /// Say nothing of the trials that `--keep` looked at.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
     /// File to write; standard output by default. `{trial}` in the name stands for the number of the trial, so that each has
     /// its own file.
     #[arg(short, long, value_name = "FILE")]
@@ -305,7 +308,7 @@ pub(super) struct Drift {
     #[arg(long, value_name = "N", conflicts_with = "threshold", value_parser = parse_quiet)]
     pub(super) false_alarm: Option<f64>,
     /// Threshold of the sum: the logarithm of the number of outcomes before a false alarm.
-    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    #[arg(long, value_name = "H")]
     pub(super) threshold: Option<f64>,
     /// Column of a table: its name, or its number, starting at 1.
     #[arg(long, value_name = "COLUMN")]

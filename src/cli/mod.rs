@@ -17,6 +17,7 @@ mod inputs;
 mod launch;
 mod manual;
 mod merge;
+mod misuse;
 mod output;
 mod outputs;
 mod page;
@@ -38,7 +39,6 @@ use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use arguments::{Arguments, Command};
 use check::Way;
-use clap::Parser;
 use destination::Destination;
 use std::borrow::Cow;
 use std::process;
@@ -49,7 +49,7 @@ const STACK: usize = 256 << 20;
 
 /// Runs the program.
 pub fn run() -> process::ExitCode {
-    let mut arguments = match Arguments::try_parse() {
+    let mut arguments = match misuse::parse(std::env::args_os().collect()) {
         Ok(arguments) => arguments,
         Err(error) if !error.use_stderr() => {
             let _ = error.print();

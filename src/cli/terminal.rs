@@ -27,7 +27,7 @@ pub(super) struct Colors {
 }
 
 impl Colors {
-    /// Follows the choice, then `NO_COLOR` and `CLICOLOR_FORCE`, then whether it is a terminal.
+    /// Follows the choice, then `NO_COLOR` and `CLICOLOR_FORCE`, then whether it is a terminal that has colors.
     #[allow(clippy::disallowed_methods, reason = "the command line reads the environment")]
     pub(super) fn chosen(choice: ColorChoice) -> Self {
         let set = |name: &str| std::env::var(name).is_ok_and(|v| !v.is_empty() && v != "0");
@@ -37,7 +37,9 @@ impl Colors {
             ColorChoice::Auto if set("NO_COLOR") => Self { out: false, err: false },
             ColorChoice::Auto if set("CLICOLOR_FORCE") || set("FORCE_COLOR") => Self { out: true, err: true },
             ColorChoice::Auto => {
-                Self { out: std::io::stdout().is_terminal(), err: std::io::stderr().is_terminal() }
+                let able = std::env::var("TERM").is_ok_and(|term| term != "dumb") || cfg!(windows);
+                let (out, err) = (std::io::stdout().is_terminal(), std::io::stderr().is_terminal());
+                Self { out: able && out, err: able && err }
             }
         }
     }

@@ -58,7 +58,7 @@ pub(super) fn parse_quiet(text: &str) -> Result<f64, String> {
 
 /// A whole number: `20000`, `2e4`.
 pub(super) fn parse_count(text: &str) -> Result<u64, String> {
-    let wrong = || format!("`{text}` is not a whole number: write 10000 or 1e4");
+    let wrong = || format!("`{text}` is not a whole number from 0: write 10000 or 1e4");
     let exact = text.parse().ok();
     let rounded = || text.parse().ok().filter(|n: &f64| *n >= 0.0 && *n <= 9e15 && n.fract() == 0.0);
     exact.or_else(|| rounded().map(|n| n as u64)).ok_or_else(wrong)

@@ -2,6 +2,8 @@
 
 use crate::program::Place;
 use serde_json::Value;
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::process::{Command, Stdio};
 
 /// Thirty people, far from each other, who walk east at 1 m/s. From 2 s on each keeps a turn of its own: the quantiles of a
 /// normal law of 20 degrees.
@@ -91,4 +93,26 @@ fn what_cannot_be_fitted_is_refused() {
         refused(&["--parameters", "tau", "--quiet", "--generations", "1", "--test", "none.scn"]),
     ];
     insta::assert_snapshot!("fit_refused", all.join("\n"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_fit_prints_its_best() {
+    let place = place(MODEL);
+    let words = ["--parameters", "heading", "--population", "40", "--generations", "1e6", "--trials", "400"];
+    let mut child = place
+        .command(&[&CALL[..], &words[..], &["--format", "json"]].concat())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let (mut log, mut line) = (BufReader::new(child.stderr.take().unwrap()), String::new());
+    log.read_line(&mut line).unwrap();
+    assert!(line.starts_with("generation 1: "), "{line}");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    log.read_to_string(&mut line).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{line}");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(found["parameters"][0]["value"].as_f64().unwrap() > 5.0, "{found:#}");
 }

@@ -22,3 +22,4 @@ mod traces;
 mod walk;
 mod walks;
 mod witnesses;
+mod words;

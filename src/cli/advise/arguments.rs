@@ -22,10 +22,10 @@ pub(in crate::cli) struct AdviseCommand {
     #[arg(long, value_name = "TRACKS")]
     pub(in crate::cli) replay: Option<String>,
     /// First time of the replay; the beginning by default.
-    #[arg(long, value_name = "TIME", requires = "replay", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", requires = "replay", value_parser = parse_moment)]
     pub(in crate::cli) from: Option<f64>,
     /// Last time of the replay; the end by default.
-    #[arg(long, value_name = "TIME", requires = "replay", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", requires = "replay", value_parser = parse_moment)]
     pub(in crate::cli) to: Option<f64>,
     /// Withhold the ids of all people but the user.
     #[arg(long, requires = "replay")]

@@ -21,10 +21,10 @@ pub(in crate::cli) struct InferCommand {
     #[arg(long, value_name = "N")]
     pub(super) trial: Option<u64>,
     /// First time.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) from: Option<f64>,
     /// Last time.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) to: Option<f64>,
     /// Withhold the ids, and use them for the scores alone.
     #[arg(long)]

@@ -23,10 +23,10 @@ pub(in crate::cli) struct Replayed {
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
     pub(super) every: Option<Duration>,
     /// First time of the replay; the beginning by default.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) from: Option<f64>,
     /// Last time of the replay; the end by default.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) to: Option<f64>,
     /// Confidence of intervals, by bootstrap over persons.
     #[arg(long, value_name = "SHARE", default_value = "95%", value_parser = parse_share)]
@@ -123,14 +123,14 @@ pub(in crate::cli) struct FitCommand {
     #[arg(long, value_name = "TIME", default_value = "2s", value_parser = parse_duration)]
     pub(super) every: Duration,
     /// First time; the beginning by default.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) from: Option<f64>,
     /// Last time; the end by default.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) to: Option<f64>,
     /// Trials of each instant.
-    #[arg(long, value_name = "N", default_value = "24", value_parser = clap::value_parser!(u64).range(5..=100_000))]
-    pub(super) trials: u64,
+    #[arg(long, value_name = "N", default_value = "24", value_parser = clap::value_parser!(u32).range(5..=100_000))]
+    pub(super) trials: u32,
     /// Largest number of generations of the search.
     #[arg(long, value_name = "N", default_value = "25", value_parser = parse_count)]
     pub(super) generations: u64,

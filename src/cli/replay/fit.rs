@@ -17,11 +17,22 @@ use crate::route::Ways;
 use crate::stats::bootstrap::DRAWS;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether the first signal has come.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Runs the command.
 pub(in crate::cli) fn run(arguments: &FitCommand, colors: Colors) -> Exit {
     let work = |call: &Call| text(arguments, call);
-    super::run(&arguments.replayed(), (arguments.velocity, Whose::Everybody), colors, work)
+    let exit = super::run(&arguments.replayed(), (arguments.velocity, Whose::Everybody), colors, work);
+    let is_early = exit == Exit::Success && INTERRUPTED.load(Ordering::Relaxed);
+    if is_early { Exit::Interrupted } else { exit }
+}
+
+fn counting(arguments: &FitCommand) -> Counting {
+    let by_properties = !arguments.by.is_empty();
+    Counting { trials: arguments.trials.into(), seed: arguments.seed, by_properties }
 }
 
 fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
@@ -30,8 +41,7 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
     let kind = arguments.kind.clone().or_else(|| user_kind(replay)).unwrap_or_default();
     let base = replay.base_of(&kind);
     let own = replay.with_kind(&kind)?;
-    let counting =
-        Counting { trials: arguments.trials, seed: arguments.seed, by_properties: !arguments.by.is_empty() };
+    let counting = counting(arguments);
     let instants = eligible(&own, call.instants.clone(), arguments.speed, PREDICTED);
     let cases = Cases::new(&own, &instants, counting, threads)?;
     if cases.persons.len() < FEWEST {
@@ -53,17 +63,25 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
             warn(&generation(one, &names, counting.by_properties));
         }
     };
-    let found = search(&cases, &fitted, options, (threads, &drivers), &mut log).map_err(|k| {
-        let said = format!("`--parameters {}`: nothing in this model uses `{}`", names[k], names[k]);
-        let hint = "another value changes no prediction: remove it, or write what needs it into the model";
-        of_tracks(&own, said).hint(hint)
-    })?;
+    // The first signal ends the search, and the best parameters so far are printed; the second one ends the process.
+    let _ = ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(Exit::Interrupted.code()));
+        }
+    });
+    let found =
+        search(&cases, &fitted, options, (threads, &drivers), (&mut log, &INTERRUPTED)).map_err(|k| {
+            let said = format!("`--parameters {}`: nothing in this model uses `{}`", names[k], names[k]);
+            let hint =
+                "another value changes no prediction: remove it, or write what needs it into the model";
+            of_tracks(&own, said).hint(hint)
+        })?;
     let test = match &arguments.test {
-        Some(model) => {
+        Some(model) if !INTERRUPTED.load(Ordering::Relaxed) => {
             let compared = tested(arguments, model, &found, options, (call, &drivers))?;
             Some((model.clone(), compared))
         }
-        None => None,
+        _ => None,
     };
     let report = FittedModel {
         model: arguments.model.scenario.clone(),
@@ -72,7 +90,7 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
         properties: arguments.by.clone(),
         kind,
         base,
-        trials: arguments.trials,
+        trials: arguments.trials.into(),
         seed: arguments.seed,
         every: *every,
         instants: instants.len() as u64,
@@ -149,9 +167,8 @@ fn tested(
         None => replay,
     };
     let everything = replay.instants(call.every, (f64::NEG_INFINITY, f64::INFINITY));
+    let counting = counting(arguments);
     let instants = eligible(&replay, everything, arguments.speed, PREDICTED);
-    let counting =
-        Counting { trials: arguments.trials, seed: arguments.seed, by_properties: !arguments.by.is_empty() };
     let cases = Cases::new(&replay, &instants, counting, &call.threads).map_err(placeless)?;
     Ok(Comparison::of(&cases, found, options, (&call.threads, drivers)))
 }

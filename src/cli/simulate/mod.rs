@@ -119,7 +119,9 @@ fn simulate(
             };
             let items = all.map(|index| Item { advice, index });
             let (kept, unresolved) = keep.judge(&prepared, target.column, arguments.seed, items)?;
-            warn(&keep.told(arguments.trials, kept.len(), unresolved));
+            if !arguments.quiet {
+                warn(&keep.told(arguments.trials, kept.len(), unresolved));
+            }
             Chosen::Kept(kept)
         }
         _ => Chosen::All(all),

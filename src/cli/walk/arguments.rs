@@ -26,7 +26,7 @@ pub(in crate::cli) struct WalkCommand {
     #[arg(long, value_enum, default_value_t = WalkFormat::Text)]
     pub(in crate::cli) format: WalkFormat,
     /// Rows of a trace for each second.
-    #[arg(long, default_value_t = 120.0, value_name = "RATE", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 120.0, value_name = "RATE")]
     pub(in crate::cli) fps: f64,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]

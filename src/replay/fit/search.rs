@@ -8,6 +8,7 @@ use crate::engine::Threads;
 use crate::kernel::driver::MakeDrivers;
 use crate::stats::bootstrap::{Bootstrap, Estimate, ratio};
 use crate::stats::evolution::Evolution;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Fewer persons say too little.
 pub const FEWEST: usize = 20;
@@ -93,7 +94,7 @@ pub struct Found {
     pub candidates: u64,
 }
 
-/// Searches for some parameters; `log` is called after each generation.
+/// Searches for some parameters; `log` is called after each generation. The search ends early once `stop` is set.
 ///
 /// # Errors
 /// The number of a parameter that changes no loss.
@@ -102,7 +103,7 @@ pub fn search(
     fitted: &[Fitted],
     options: Searching,
     (threads, drivers): (&Threads, &MakeDrivers),
-    log: &mut dyn FnMut(&Generation),
+    (log, stop): (&mut dyn FnMut(&Generation), &AtomicBool),
 ) -> Result<Found, usize> {
     let is_held_out = |id: &u32| {
         let key = TrialKey { seed: options.seed, index: u64::from(*id), branch: 1 };
@@ -137,7 +138,12 @@ pub fn search(
     let mut generations = Vec::new();
     while (generations.len() as u64) < options.generations && evolution.reach() > LAST {
         let places = evolution.draw();
-        let parts: Vec<Parts> = places.iter().map(|place| at(place)).collect();
+        let goes_on = || !stop.load(Ordering::Relaxed);
+        let parts: Vec<Parts> = places.iter().map_while(|place| goes_on().then(|| at(place))).collect();
+        if parts.len() < places.len() {
+            tried.extend(places.into_iter().zip(parts));
+            break;
+        }
         let all: Vec<f64> = parts.iter().map(loss).collect();
         evolution.learn(&places, &all);
         let best = (0..all.len()).min_by(|a, b| all[*a].total_cmp(&all[*b])).unwrap_or(0);
