@@ -104,6 +104,7 @@ fn a_message_names_place_cause_and_remedy() {
         include_str!("mistakes/prism.case"),
         include_str!("mistakes/python.case"),
         include_str!("mistakes/slips.case"),
+        include_str!("mistakes/tools.case"),
         include_str!("mistakes/uppaal.case"),
     ];
     let (mut points, mut count, mut poor) = (0_u32, 0_u32, String::new());

@@ -11,7 +11,10 @@ use super::study::{Form, Part};
 use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
-use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Separation, Set, Who};
+use crate::model::{
+    Arithmetic, Bool, Comparison, Domain, Field, Fold, Function, Num, Place, Separation, Set, Who,
+};
+use crate::syntax::ast::BinaryOp;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -26,19 +29,53 @@ pub(super) struct Margins {
     mixed: bool,
     /// How many numbers are around the present place: conditions inside a number are none of the formula.
     pub(super) inside: u32,
-    /// The first equality of numbers, which has none, and the comparison to write instead.
+    /// The first equality of numbers, which has none, and what to write instead.
     equality: Option<(Span, String)>,
 }
 
+/// The range of a number of which nothing is known.
+const UNKNOWN: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
 impl Elaborator<'_> {
-    /// An equality: it has no margin.
-    pub(super) fn note_equality(&mut self, (left, right): (Span, Span), b: &Typed) {
-        if !matches!(b, Typed::Number(_)) || self.margins.as_ref().is_none_or(|m| m.equality.is_some()) {
+    /// An equality: it has no margin. At an end of a range an inequality says the same.
+    pub(super) fn note_equality(
+        &mut self,
+        op: BinaryOp,
+        (left, right): (Span, Span),
+        sides: (&Typed, &Typed),
+    ) {
+        let (a, Typed::Number(b)) = sides else { return };
+        if self.margins.as_ref().is_none_or(|m| m.equality.is_some()) {
             return;
         }
-        let instead = format!("{} >= {}", self.text(left), self.text(right));
+        let (low, high) = if let Typed::Num(num, _) = a { self.reach(num) } else { UNKNOWN };
+        let [above, below] = if op == BinaryOp::Equal { [">=", "<="] } else { [">", "<"] };
+        let (at_low, at_high) = (b.value <= low, b.value >= high);
+        let sign = if at_low == (op == BinaryOp::Equal) && (at_low || at_high) { below } else { above };
+        let other = if at_low || at_high { String::new() } else { format!(", or `{below}`") };
+        let instead = format!("write `{} {sign} {}`{other}", self.text(left), self.text(right));
         if let Some(margins) = &mut self.margins {
             margins.equality = Some((left.to(right), instead));
+        }
+    }
+
+    /// The smallest and the largest value that a number can have.
+    fn reach(&self, num: &Num) -> (f64, f64) {
+        match num {
+            Num::Variable(variable) => match self.domain(*variable).and_then(Domain::values) {
+                Some((low, count)) => (low, low + (count - 1) as f64),
+                None => UNKNOWN,
+            },
+            // Truth values, as they are counted.
+            Num::If(_, yes, no) if (&**yes, &**no) == (&Num::Constant(1.0), &Num::Constant(0.0)) => {
+                (0.0, 1.0)
+            }
+            Num::Combine(Arithmetic::Add, a, b) => {
+                let (a, b) = (self.reach(a), self.reach(b));
+                (a.0 + b.0, a.1 + b.1)
+            }
+            Num::Count(set, _) => (0.0, set.members.len() as f64),
+            _ => UNKNOWN,
         }
     }
 
@@ -90,7 +127,7 @@ impl Elaborator<'_> {
                     self.text(place)
                 );
                 let error = Diagnostic::error(Code::E0610, place, title);
-                return self.report(error.hint(format!("write `{instead}`, or `<=`")));
+                return self.report(error.hint(instead));
             }
             let error = Diagnostic::error(Code::E0610, span, "no condition in this formula has a margin")
                 .hint("comparisons with `<`, `<=`, `>`, `>=`, contacts and regions have a margin");

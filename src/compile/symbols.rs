@@ -151,6 +151,14 @@ impl<'a> Scope<'a> {
     }
 }
 
+/// Words of other programs for fields, and the field.
+const SPOKEN: [(&[&str], &str); 4] = [
+    (&["goal", "goals", "target", "destination"], "route"),
+    (&["start", "origin", "position", "pos"], "at"),
+    (&["max_speed", "desired_speed", "preferred_speed", "v0"], "speed"),
+    (&["weight"], "mass"),
+];
+
 /// An unknown name, with the nearest known one as a hint.
 pub(super) fn unknown<'n>(
     what: &str,
@@ -160,7 +168,9 @@ pub(super) fn unknown<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
     let error = Diagnostic::error(code, span, format!("unknown {what} `{name}`"));
-    match nearest(name, known) {
+    let known: Vec<&str> = known.collect();
+    let spoken = SPOKEN.iter().find(|(theirs, ours)| theirs.contains(&name) && known.contains(ours));
+    match spoken.map(|(_, ours)| *ours).or_else(|| nearest(name, known.into_iter())) {
         Some(near) => error.hint(format!("did you mean `{near}`?")),
         None => error,
     }

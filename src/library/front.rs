@@ -11,7 +11,7 @@ use crate::syntax::ast::{Expr, Item, PropertyFile, PropertyItem, ScenarioFile, V
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{
-    continues_name, decode, parse_properties, parse_scenario, parse_value, split_values,
+    continues_name, decode, parse_properties, parse_properties_of, parse_scenario, parse_value, split_values,
 };
 use crate::syntax::source::{Source, SourceId, Span};
 use std::collections::BTreeMap;
@@ -108,10 +108,12 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     let mut complete = true;
     let mut scenario = ScenarioFile::default();
     let mut properties = Vec::new();
+    let mut counts_steps = false;
     match reader.source(names.scenario) {
         Some(source) => {
             let (file, diagnostics) = parse_scenario(&source);
             scenario = file;
+            counts_steps = has_steps(&scenario, &source);
             if scenario.items.is_empty() && diagnostics.is_empty() {
                 // Nothing but comments: as an empty file.
                 complete = false;
@@ -126,7 +128,7 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     for name in names.properties {
         // One that cannot be read was reported; the others are examined without it.
         let Some(source) = reader.source(name) else { continue };
-        let (file, diagnostics) = parse_properties(&source);
+        let (file, diagnostics) = parse_properties_of(&source, counts_steps);
         properties.push(file);
         let hint = "this is a scenario; write it first and property files after it";
         reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
@@ -363,6 +365,15 @@ fn has_used_parameter(input: &Input<'_>) -> bool {
         }
     }
     params.values().any(|count| *count > 1)
+}
+
+/// Whether the horizon of a scenario is a number of steps.
+fn has_steps(scenario: &ScenarioFile, source: &Source) -> bool {
+    let text = |span: Span| &source.text[span.start as usize..span.end as usize];
+    scenario.items.iter().any(|item| match item {
+        Item::Setting { name, value } => name.name == "horizon" && text(value.span).contains("step"),
+        _ => false,
+    })
 }
 
 /// Whether a text is a scenario, with something in it that only scenarios have.

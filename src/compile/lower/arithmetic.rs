@@ -185,8 +185,20 @@ impl Elaborator<'_> {
     }
 
     fn lower_power(&mut self, span: Span, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
-        let sides = (self.number_of(right, Dimension::NONE, locals), self.lower(left, locals));
-        let (exponent, base) = (sides.0?, sides.1?);
+        let sides = (self.lower(right, locals), self.lower(left, locals));
+        let (exponent, base) = match (sides.0?, sides.1?) {
+            (Typed::Num(exponent, Dimension::NONE), base) if !matches!(base, Typed::Term(..)) => {
+                let (base, dimension) = self.as_num(base, left.span)?;
+                if !dimension.is_none() {
+                    let said = format!("{} can only be raised to a fixed whole power", describe(dimension));
+                    return self.report(Diagnostic::error(Code::E0303, right.span, said));
+                }
+                let power = Num::Combine(Arithmetic::Power, Box::new(base), Box::new(exponent));
+                return Ok(Typed::Num(power, dimension));
+            }
+            // An error of the exponent is reported by what asks for a fixed number.
+            (_, base) => (self.number_of(right, Dimension::NONE, locals)?, base),
+        };
         let whole = exponent.as_whole().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() <= 64);
         let power = |this: &mut Self, dimension: Dimension| -> Lowered<Dimension> {
             if dimension.is_none() {

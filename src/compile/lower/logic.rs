@@ -155,7 +155,7 @@ impl Elaborator<'_> {
         let b = if matches!(b, Typed::Infinity) { infinite(&a) } else { b };
         let span = Span { end: right.span.end, ..left.span };
         if !margin {
-            self.note_equality((left.span, right.span), &b);
+            self.note_equality(op, (left.span, right.span), (&a, &b));
         }
         match (&a, &b) {
             (Typed::Agent(_), Typed::Agent(_)) => {

@@ -207,6 +207,16 @@ impl Elaborator<'_> {
         }
     }
 
+    /// The values that a variable can have.
+    pub(in crate::compile) fn domain(&self, variable: VariableId) -> Option<Domain> {
+        self.processes.iter().find_map(|process| {
+            let at = variable.0.checked_sub(process.first)? as usize;
+            let count = process.variables.len();
+            let is_own = at < count * process.copies.unwrap_or(1) as usize;
+            is_own.then(|| process.variables[at % count].1)
+        })
+    }
+
     fn copy_name(&self, at: usize, copy: u32) -> String {
         let process = &self.processes[at];
         match process.copies {

@@ -21,7 +21,7 @@ impl Builder<'_> {
     pub(super) fn agents(&mut self, pair: Pair<'_>) -> Option<AgentsDecl> {
         let plural = pair.clone().into_inner().next()?.as_rule() == Rule::kw_agents;
         let mut parts = Parts::of(pair);
-        let name = self.declared(&parts.part(Rule::name)?);
+        let name = self.ident(&parts.part(Rule::name)?);
         let count = self.size(&mut parts)?;
         let kind = self.ident(&parts.part(Rule::name)?);
         let (with, recorded) = self.attachments(&mut parts)?;
@@ -31,7 +31,7 @@ impl Builder<'_> {
     pub(super) fn group(&mut self, pair: Pair<'_>) -> Option<GroupDecl> {
         let plural = pair.clone().into_inner().next()?.as_rule() == Rule::kw_groups;
         let mut parts = Parts::of(pair);
-        let name = self.declared(&parts.part(Rule::name)?);
+        let name = self.ident(&parts.part(Rule::name)?);
         let count = self.size(&mut parts)?;
         let kind = self.ident(&parts.part(Rule::name)?);
         let particle = parts.part(Rule::particle).map(|particle| self.span(&particle));
@@ -56,7 +56,7 @@ impl Builder<'_> {
     pub(super) fn source_decl(&mut self, pair: Pair<'_>) -> Option<SourceDecl> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let name = self.declared(&parts.part(Rule::name)?);
+        let name = self.ident(&parts.part(Rule::name)?);
         let kind = self.ident(&parts.part(Rule::name)?);
         let with = match parts.part(Rule::with) {
             Some(clause) => self.with(clause)?,

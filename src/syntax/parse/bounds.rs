@@ -89,13 +89,7 @@ impl Builder<'_> {
         let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
         let operator = lexeme::word_before(self.text, before.len() - mark.len()).map_or("", |(_, word)| word);
         let formula = format!("({word} {} …)", fault.found);
-        // Whether it has steps, or steps of a length, only the scenario knows.
-        let steps =
-            number.bytes().all(|byte| byte.is_ascii_digit()).then(|| format!(" (for steps `#{number}`)"));
-        let hint = format!(
-            "write a unit{} and parentheses: `{operator}{mark}{number} s {formula}`",
-            steps.unwrap_or_default()
-        );
+        let hint = format!("write parentheses: `{operator}{mark}{number}{} {formula}`", self.unit);
         Some(
             Diagnostic::error(
                 code::BOUND_TOOK_NAME,

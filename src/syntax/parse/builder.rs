@@ -24,6 +24,8 @@ pub(super) struct Builder<'s> {
     pub(super) text: &'s str,
     /// The kind of file.
     pub(super) root: Rule,
+    /// What hints write behind a time without a unit.
+    pub(super) unit: &'static str,
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Parts that ended early.
     pub(super) cut: Vec<Span>,
@@ -148,24 +150,6 @@ impl Builder<'_> {
 
     pub(super) fn ident(&self, pair: &Pair<'_>) -> Ident {
         Ident { name: pair.as_str().to_owned(), span: self.span(pair) }
-    }
-
-    /// A name that is declared and may then stand in expressions.
-    pub(super) fn declared(&mut self, pair: &Pair<'_>) -> Ident {
-        let ident = self.ident(pair);
-        if super::quantity::UNITS.contains(&ident.name.as_str()) {
-            let name = &ident.name;
-            let warning = Diagnostic::warning(
-                code::NAME_IS_UNIT,
-                ident.span,
-                format!("the name `{name}` is also a unit"),
-            )
-            .hint(format!(
-                "after a number, `{name}` is read as the unit, as in `2 {name}`; choose another name"
-            ));
-            self.say(warning);
-        }
-        ident
     }
 
     /// A quoted text, escapes resolved.

@@ -212,7 +212,7 @@ impl Builder<'_> {
             _ => {
                 let forall = pair.clone().into_inner().next()?.as_rule() == Rule::kw_forall;
                 let mut parts = Parts::of(pair);
-                let variable = self.declared(&parts.part(Rule::name)?);
+                let variable = self.ident(&parts.part(Rule::name)?);
                 let set = self.sequence(parts.part(Rule::set)?)?;
                 extra = Extra::of(std::iter::once(&set));
                 let quantifier = if forall { Quantifier::Forall } else { Quantifier::Exists };
@@ -423,7 +423,7 @@ impl Builder<'_> {
 
     fn count(&mut self, pair: Pair<'_>, span: Span) -> Option<Built> {
         let mut parts = Parts::of(pair);
-        let variable = self.declared(&parts.part(Rule::name)?);
+        let variable = self.ident(&parts.part(Rule::name)?);
         let set = self.sequence(parts.part(Rule::set)?)?;
         let body = match parts.part(Rule::expr) {
             Some(body) => self.sequence(body)?,
@@ -456,7 +456,7 @@ impl Builder<'_> {
         }
         if let Some(over) = parts.part(Rule::fold_over) {
             let mut over = Parts::of(over);
-            let variable = self.declared(&over.part(Rule::name)?);
+            let variable = self.ident(&over.part(Rule::name)?);
             let set = self.sequence(over.part(Rule::set)?)?;
             let Some(fold) = aggregate(&function.name) else {
                 let title = format!("`{}` cannot fold over a set", function.name);

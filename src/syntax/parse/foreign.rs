@@ -41,6 +41,7 @@ type Row = (In, &'static str, &'static str, &'static str);
 const QUERY: &str = "a query starts with `check` or `estimate`, found `{}`";
 const ONE_SET: &str = "a quantifier needs one set, found `{}`";
 const MOMENT: &str = "`at` must apply to the whole metric of `E(…)` or `Q(…)`";
+const ENDS: &str = "a comma must separate the ends of an interval, found `{}`";
 const UPDATE: &str = "an update needs `=`, found `{}`";
 
 /// The forms of other languages.
@@ -48,6 +49,8 @@ const UPDATE: &str = "an update needs `=`, found `{}`";
 const FORMS: &[Row] = &[
     // Queries.
     (Properties, "PRISM", "P $r $n [ $c ]", "check P($c) $r $n"),
+    (Properties, "PRISM", "check P $r $n [ $c ]", "check P($c) $r $n"),
+    (Properties, "PRISM", "estimate P = ? [ $c ]", "estimate P($c)"),
     (Properties, "PRISM", "P = ? [ $c ]", "estimate P($c)"),
     (Properties, "PRISM", "Pmax = ? [ $c ]", "estimate P($c)"),
     (Properties, "PRISM", "Pmin = ? [ $c ]", "estimate P($c)"),
@@ -55,6 +58,8 @@ const FORMS: &[Row] = &[
     (Properties, "PRISM", "R { $q } = ? [ $e ]", "estimate E(sum<=… ($q)) in … .. …"),
     (Properties, "PRISM", "R = ? [ $e ]", "estimate E(sum<=… (…)) in … .. …"),
     (Properties, "PRISM", "S = ? [ $c ]", "estimate E(mean<=10 s (if($c, 1, 0))) in 0 .. 1"),
+    (Properties, "UPPAAL", "Pr [ <= $t ] ( < > $e ) $r $n", "check P(F<=$t ($e)) $r $n"),
+    (Properties, "UPPAAL", "Pr [ <= $t ] ( [ ] $e ) $r $n", "check P(G<=$t ($e)) $r $n"),
     (Properties, "UPPAAL", "Pr [ <= $t ] ( < > $e )", "estimate P(F<=$t ($e))"),
     (Properties, "UPPAAL", "Pr [ <= $t ] ( [ ] $e )", "estimate P(G<=$t ($e))"),
     (Properties, "UPPAAL", "E [ <= $t ; $n ] ( max : $e )", "estimate E(max<=$t ($e)) in … .. …"),
@@ -67,6 +72,7 @@ const FORMS: &[Row] = &[
     (Properties, "the threshold must follow `P(…)`, found `{}`", "check P @ $r $n ( $e )", "check P($e) $r $n"),
     (Properties, QUERY, "P ( $e ) $r $n", "check P($e) $r $n"),
     (Properties, QUERY, "P ( $e )", "estimate P($e)"),
+    (Properties, QUERY, "maximize P ( $e1 ) over $w in $e2 .. $l", "rank $w in $e2 .. $l by 1 by P($e1)"),
     (Properties, QUERY, "Q ( $e1 , $e2 )", "estimate Q($e1, $e2)"),
     (Properties, QUERY, "E ( $e )", "estimate E($e)"),
     // Formulas.
@@ -92,6 +98,9 @@ const FORMS: &[Row] = &[
     (Properties, "LTL", "globally $e", "G $e"),
     (Properties, "LTL", "until", "U"),
     (Properties, "an interval needs two ends, found `{}`", "$o @ [ $t ]", "$o<=$t"),
+    (Properties, ENDS, "$o @ [ $t1 : $t2 ]", "$o[$t1, $t2]"),
+    (Properties, ENDS, "$o @ [ $t1 - $t2 ]", "$o[$t1, $t2]"),
+    (Properties, "a bound has no brackets, found `{}`", "$o @ <= { $t }", "$o<=$t"),
     (Properties, "a bound has no brackets, found `{}`", "$o @ [ <= $t ]", "$o<=$t"),
     (Properties, "an interval must be in `[` and `]`, found `{}`", "$o @ { $t1 , $t2 }", "$o[$t1, $t2]"),
     (Properties, "a bound has no brackets, found `{}`", "$o @ { <= $t }", "$o<=$t"),
@@ -136,6 +145,9 @@ const FORMS: &[Row] = &[
     (Scenario, "Python", "= @ [ $e1 , $e2 ]", "= ($e1, $e2)"),
     (Scenario, "the number of agents must follow their name, found `{}`", "agents @ $n $w : $w2", "agents $w[$n]: $w2"),
     (Scenario, "goals must be joined by `->`, found `{}`", "route = $w1 @ , $w2", "route = $w1 -> $w2"),
+    (Scenario, "a number must have a decimal point, found `{}`", "= $n1 @ , $n2", "= $n1.$n2"),
+    (Scenario, "a parameter has no type, found `{}`", "param $w @ : $y = $e", "param $w = $e"),
+    (Scenario, "expected `..` and the opposite corner, found `{}`", "rect ( $e1 , $e2 ) @ size ( $e3 , $e4 )", "rect ($e1, $e2) .. ($e1 + $e3, $e2 + $e4)"),
     (Scenario, "expected `in`, found `{}`", "uniform @ $w", "uniform in $w"),
     (Scenario, "expected a quoted text, found `{}`", "import @ $w", "import \"$w\""),
 ];
@@ -160,9 +172,9 @@ const INSIDE: &[Row] = &[
 /// Other spellings within a condition of PRISM, where temporal operators bind more loosely than others.
 #[rustfmt::skip]
 const CONDITION: &[Row] = &[
-    (Properties, "", "$c1 U <= $n $c2", "($c1) U<=$n ($c2)"),
+    (Properties, "", "$c1 U <= $t $c2", "($c1) U<=$t ($c2)"),
     (Properties, "", "$c1 U $c2", "($c1) U ($c2)"),
-    (Properties, "", "$o <= $n $c", "$o<=$n ($c)"),
+    (Properties, "", "$o <= $t $c", "$o<=$t ($c)"),
     (Properties, "", "$o $c", "$o ($c)"),
     (Properties, "", "$q", "$q"),
     (Both, "", "$w = $n", "$w == $n"),
@@ -209,6 +221,8 @@ struct Found<'p> {
 struct Tokens<'t> {
     text: &'t str,
     spans: Vec<Range<usize>>,
+    /// Written behind a time without a unit.
+    unit: &'static str,
 }
 
 impl<'t> Tokens<'t> {
@@ -224,7 +238,7 @@ impl<'t> Tokens<'t> {
             spans.push(at..at + length);
             at += length;
         }
-        Self { text, spans }
+        Self { text, spans, unit: "" }
     }
 
     fn get(&self, at: usize) -> &'t str {
@@ -337,10 +351,10 @@ impl<'t> Tokens<'t> {
             if let Some((_, tokens)) = found.holes.iter().find(|(name, _)| *name == hole) {
                 let text = &self.text[self.bytes(tokens)];
                 match hole.as_bytes()[0] {
-                    b'e' | b'u' => filled.push_str(&inside(text, file, &[])),
-                    b'c' => filled.push_str(&inside(text, file, CONDITION)),
+                    b'e' | b'u' => filled.push_str(&inside(text, self.unit, file, &[])),
+                    b'c' => filled.push_str(&inside(text, self.unit, file, CONDITION)),
                     b'q' => filled.push_str(text.trim_matches('"')),
-                    b't' if tokens.len() == 1 => drop(write!(filled, "{text} s")),
+                    b't' if tokens.len() == 1 => drop(write!(filled, "{text}{}", self.unit)),
                     _ => filled.push_str(text),
                 }
             }
@@ -351,8 +365,8 @@ impl<'t> Tokens<'t> {
 }
 
 /// A hole in which spellings are replaced, too.
-fn inside(text: &str, file: In, more: &[Row]) -> String {
-    let tokens = Tokens::of(text, 0, text.len());
+fn inside(text: &str, unit: &'static str, file: In, more: &[Row]) -> String {
+    let tokens = Tokens { unit, ..Tokens::of(text, 0, text.len()) };
     let (mut written, mut copied, mut at) = (String::new(), 0, 0);
     while at < tokens.spans.len() {
         let hit = INSIDE.iter().chain(more).filter(|row| row.0 == Both || row.0 == file).find_map(|row| {
@@ -405,7 +419,7 @@ impl Builder<'_> {
         let line = self.source.line_start(fault.at as u32) as usize;
         let from = self.text.floor_char_boundary(fault.at.saturating_sub(BEFORE)).max(line).max(fault.from);
         let end = self.text.floor_char_boundary(fault.at.saturating_add(REACH));
-        let tokens = Tokens::of(self.text, from, end);
+        let tokens = Tokens { unit: self.unit, ..Tokens::of(self.text, from, end) };
         let behind = tokens.spans.partition_point(|span| span.start <= fault.at);
         let are_operators = rows.len() == OPERATORS.len();
         let rows = || rows.iter().filter(|row| row.0 == Both || row.0 == file);

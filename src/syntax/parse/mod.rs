@@ -82,8 +82,15 @@ pub fn parse_scenario(source: &Source) -> (ScenarioFile, Vec<Diagnostic>) {
 /// Parses a property file (`.bltl`). What could not be read is missing from the tree and reported.
 #[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_properties(source: &Source) -> (PropertyFile, Vec<Diagnostic>) {
-    let (file, diagnostics) =
-        parse(source, &source.text, Rule::property_file, |builder, file| builder.property_file(file));
+    parse_properties_of(source, false)
+}
+
+/// The same, where it is known whether the scenario counts steps: hints write times as it does.
+pub fn parse_properties_of(source: &Source, counts_steps: bool) -> (PropertyFile, Vec<Diagnostic>) {
+    let (file, diagnostics) = parse(source, &source.text, Rule::property_file, |builder, file| {
+        builder.unit = if counts_steps { "" } else { " s" };
+        builder.property_file(file)
+    });
     (file.unwrap_or_default(), diagnostics)
 }
 
@@ -159,6 +166,7 @@ fn parse<T>(
         source,
         text,
         root: rule,
+        unit: " s",
         diagnostics: Vec::new(),
         cut: Vec::new(),
         lost: Vec::new(),

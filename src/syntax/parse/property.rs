@@ -39,7 +39,7 @@ impl Builder<'_> {
         let mut parts = Parts::of(pair);
         match rule {
             Rule::const_decl => {
-                let name = self.declared(&parts.part(Rule::name)?);
+                let name = self.ident(&parts.part(Rule::name)?);
                 Some(PropertyItem::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
             }
             Rule::property => {

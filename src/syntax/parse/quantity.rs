@@ -76,6 +76,15 @@ impl Builder<'_> {
                 _ => {}
             }
         }
+        if let Some(UnitExpr { factors, span }) = &unit
+            && let [UnitFactor { name: Ident { name, .. }, power: 1 }] = factors.as_slice()
+            && self.is_declared(name)
+            && !self.diagnostics.iter().any(|one| one.code == code::NAME_IS_UNIT)
+        {
+            let title = format!("`{name}` is read as the unit, but is also a name");
+            let warning = Diagnostic::warning(code::NAME_IS_UNIT, *span, title);
+            self.say(warning.hint(format!("choose another name; for a product write `2 * {name}`")));
+        }
         Some(Quantity { value: value?, unit })
     }
 
@@ -139,5 +148,33 @@ impl Builder<'_> {
         };
         let span = Span::new(self.source.id, start, start + name.len());
         Some(UnitFactor { name: Ident { name: name.to_owned(), span }, power: sign * i32::from(power) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::parse::{parse_properties, parse_scenario};
+    use crate::syntax::source::{Source, SourceId};
+
+    #[test]
+    fn a_name_that_is_a_unit_is_told_only_behind_a_number() {
+        let source = |text: &str| Source::new(SourceId(0), "a", text);
+        let count = |said: &[Diagnostic]| said.iter().filter(|one| one.code == code::NAME_IS_UNIT).count();
+        for (wanted, text) in [
+            (0, "check P(F<=9 s (count(s in sensor: s.works) >= 3)) >= 0.9"),
+            (0, "property a = F<=9 s (forall m in all: speed(m) < 2 m/s) & distance(a, b) > 2 m"),
+            (0, "const s = 3"),
+            (0, "const s = 3\nlet far = 2 * s"),
+            (0, "const s = 3\nlet far = 2 m/s"),
+            (1, "const s = 3 m\nlet far = 2 s\nlet near = 1 s"),
+            (1, "let far = 2 m\nlet m(a) = a + 1"),
+        ] {
+            let said = parse_properties(&source(text)).1;
+            assert_eq!(count(&said), wanted, "{text}\n{said:?}");
+        }
+        let scenario = |text: &str| count(&parse_scenario(&source(text)).1);
+        assert_eq!(scenario("horizon = 9 steps\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 0);
+        assert_eq!(scenario("horizon = 9 s\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 1);
     }
 }

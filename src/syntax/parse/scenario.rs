@@ -38,12 +38,12 @@ impl Builder<'_> {
             }
             Rule::const_decl => {
                 let mut parts = Parts::of(pair);
-                let name = self.declared(&parts.part(Rule::name)?);
+                let name = self.ident(&parts.part(Rule::name)?);
                 Some(Item::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
             }
             Rule::param => {
                 let mut parts = Parts::of(pair);
-                let name = self.declared(&parts.part(Rule::name)?);
+                let name = self.ident(&parts.part(Rule::name)?);
                 if let Some(value) = parts.part(Rule::expr) {
                     return Some(Item::Param { name, value: self.expr(value)?, range: None });
                 }
@@ -83,14 +83,14 @@ impl Builder<'_> {
     /// `let f(a) = …`
     pub(super) fn let_decl(&mut self, pair: Pair<'_>) -> Option<LetDecl> {
         let mut parts = Parts::of(pair);
-        let name = self.declared(&parts.part(Rule::name)?);
+        let name = self.ident(&parts.part(Rule::name)?);
         let arguments =
             parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
         Some(LetDecl { name, arguments, body: self.expr(parts.part(Rule::expr)?)? })
     }
 
     pub(super) fn parameters(&mut self, pair: Pair<'_>) -> Vec<crate::syntax::ast::Ident> {
-        Parts::of(pair).map(|parameter| self.declared(&parameter)).collect()
+        Parts::of(pair).map(|parameter| self.ident(&parameter)).collect()
     }
 
     fn moves(&mut self, pair: Pair<'_>) -> Option<MovesDecl> {

@@ -40,7 +40,7 @@ impl Builder<'_> {
                 span,
             });
         }
-        let name = parts.part(Rule::name).map(|name| self.declared(&name));
+        let name = parts.part(Rule::name).map(|name| self.ident(&name));
         match rule {
             Rule::wall => {
                 let points = parts.map(|point| self.expr(point)).collect::<Option<_>>()?;

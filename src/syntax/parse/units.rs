@@ -23,8 +23,9 @@ impl Builder<'_> {
         let is_bound = matches!(operator, "min" | "max" | "sum" | "mean")
             || operator.len() == 1 && operator.starts_with(OPERATORS);
         let is_number = number.starts_with(|c: char| c.is_ascii_digit());
-        let is_unit = quantity::UNITS.contains(&word);
-        if !is_bound || !is_number || is_unit || self.root != Rule::property_file || self.is_declared(word) {
+        // A name with its member is no unit.
+        let is_fine = quantity::UNITS.contains(&word) || word.contains('.');
+        if !is_bound || !is_number || is_fine || self.root != Rule::property_file || self.is_declared(word) {
             return None;
         }
         let (unit, _) = quantity::time_meant(word)?;

@@ -5,7 +5,7 @@ use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
 
 /// Texts around a form.
-const AROUND: [&str; 16] = [
+const AROUND: [&str; 17] = [
     "%",
     "property p = %",
     "property p = % (b)",
@@ -17,6 +17,7 @@ const AROUND: [&str; 16] = [
     "process p { var n: 0 .. 3 = 0 when n == 0 -> % }",
     "process p { % = 0 }",
     "scene { % }",
+    "scene { region r: % }",
     "agent a: k { at % }",
     "agent a: k { at = % }",
     "agent a: k { % }",
