@@ -6,7 +6,9 @@ use crate::texts::compiled;
 use smc::base::geometry::{Segment, Shape, Vec2};
 use smc::base::lanes::Mask;
 use smc::base::random::TrialKey;
+use smc::engine::outcome::Verdict;
 use smc::kernel::{Address, Code, Program, Readings, Run};
+use smc::{Model, Options};
 use std::fmt::Write as _;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -311,4 +313,31 @@ fn a_flow_without_a_full_window_says_so() {
 fn the_model_of_a_door_shows_its_line() {
     let said = at_root(&["show", "models/door.scn"]);
     assert!(said.out.contains("line door: (8, 3.4) -- (8, 4.6) m"), "{}{}", said.out, said.err);
+}
+
+#[test]
+fn the_time_of_a_leg_is_the_time_until_it_ends() {
+    for step in ["0.02", "0.025", "0.04", "0.05", "0.1", "1 / 30"] {
+        for way in [0.83, 1.13, 2.07, 3.59, 4.41] {
+            let text = format!(
+                "horizon = 10 s\nstep = {step} s\nkind k: sfm preset helbing2000 {{ radius = 0.2 m; speed = 1 m/s }}\n\
+                 agent p: k {{ at = (0, 0); route = ({way}, 0) }}\n\
+                 agent q: k {{ at = (0, 50); route = wait 0.6 s -> ({way}, 50) }}"
+            );
+            let queries = "check P(leg_time(p, 1) <= time_until(legs(p) >= 1)) >= 0.9\n\
+                           check P(leg_time(p, 1) >= time_until(legs(p) >= 1)) >= 0.9\n\
+                           check P(time_until(done(p)) <= leg_time(p, 1)) >= 0.9\n\
+                           check P(time_until(done(q)) <= time_until(legs(q) >= 1)) >= 0.9\n";
+            let model = Model::parse(&text.replace("1 / 30 s", "1 s / 30")).unwrap();
+            let report = model.check(queries, &Options::default()).unwrap();
+            for result in report.results() {
+                assert_eq!(
+                    result.verdict,
+                    Some(Verdict::Satisfied),
+                    "{} of {way} m, step {step}",
+                    result.asked.text
+                );
+            }
+        }
+    }
 }

@@ -6,7 +6,7 @@ use super::situation::Situation;
 use super::stage::Drive;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{Lanes, Mask};
-use crate::base::tick::steps_over;
+use crate::base::tick::{Tick, steps_over};
 use crate::kernel::plan::{Occasion, Plan};
 use crate::kernel::state::{Slot, State};
 use crate::model::{AgentId, Parameter, Route};
@@ -52,7 +52,7 @@ fn one(drive: &Drive, state: &mut State, slot: Slot) {
         entity: drive.scenario.agents[agent].entity + state.queues.later(agent, trial),
         key: state.keys[trial],
         asked: held.asked,
-        time: state.ticks[trial] as f64 * drive.dt,
+        time: drive.scenario.clock.seconds(Tick(state.ticks[trial])),
         dt: drive.dt,
         after,
         position,

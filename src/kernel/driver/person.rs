@@ -5,7 +5,7 @@ use super::stage::{Drive, Stage, Target};
 use crate::base::geometry::{Vec2, rotated};
 use crate::base::lanes::Mask;
 use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
-use crate::base::tick::steps_over;
+use crate::base::tick::{Tick, steps_over};
 use crate::kernel::code::ground::Ground;
 use crate::kernel::code::lanes::Vector;
 use crate::kernel::plan::Occasion;
@@ -190,22 +190,23 @@ impl<'a> Person<'a> {
         }
     }
 
-    /// Way gone, m, and time, s.
-    fn now(&self) -> (f64, f64) {
-        (self.state.motion.travelled[self.block].0[self.lane], self.tick() as f64 * self.drive.dt)
+    /// Way gone, m.
+    fn travelled(&self) -> f64 {
+        self.state.motion.travelled[self.block].0[self.lane]
     }
 
     /// Begins a leg.
     fn set_out(&mut self) {
-        let (travelled, time) = self.now();
-        self.state.progress.set_out(Slot { block: self.block, lane: self.lane }, travelled, time);
+        let (travelled, tick) = (self.travelled(), self.tick());
+        self.state.progress.set_out(Slot { block: self.block, lane: self.lane }, travelled, tick);
     }
 
     /// Ends a leg of its own route.
     fn arrive(&mut self) {
         if self.way.round == 0 {
-            let (travelled, time) = self.now();
-            self.state.progress.arrive(Slot { block: self.block, lane: self.lane }, travelled, time);
+            let (travelled, tick) = (self.travelled(), self.tick());
+            let (slot, clock) = (Slot { block: self.block, lane: self.lane }, self.drive.scenario.clock);
+            self.state.progress.arrive(slot, travelled, tick, clock);
         }
     }
 
@@ -220,7 +221,8 @@ impl<'a> Person<'a> {
         }
         let rests = (1..).zip(&stage.rests).map(|(k, law)| self.pause(law, stage.leg.wrapping_add(k)));
         let ticks = rests.fold(self.tick(), u64::saturating_add);
-        self.state.progress.done_at[block].0[lane] = ticks as f64 * self.drive.dt;
+        // As `time` is, with which it is compared.
+        self.state.progress.done_at[block].0[lane] = self.drive.scenario.clock.seconds(Tick(ticks));
     }
 
     /// A pause of a leg, in ticks.
