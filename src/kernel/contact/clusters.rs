@@ -254,6 +254,18 @@ impl Clusters {
         hot.fold(0.0, |stiffest, cluster| math::at_least(cluster.stiffest, stiffest))
     }
 
+    /// Stops the centres that came upon a face. The spring of contact stops only bodies slower than radius sqrt(k1 / mass).
+    pub(super) fn stop_at_faces(&mut self, forces: &Forces, state: &State) {
+        for touch in self.walls.iter().filter(|touch| self.all[touch.cluster as usize].hot) {
+            let slot = self.bodies[touch.a as usize].slot;
+            let (from, to) = (at(&state.motion.x, &state.motion.y, slot), &mut self.x[touch.a as usize]);
+            if let Some((place, normal)) = forces.surfaces.stop(touch.b, from, *to) {
+                let v = &mut self.motions[touch.a as usize].v;
+                (*to, *v) = (place, *v - normal * math::at_most(v.dot(&normal), 0.0));
+            }
+        }
+    }
+
     /// Hands places and velocities of the bodies of hot clusters back, and marks them in `moved`.
     pub(super) fn hand_back(&self, state: &mut State, moved: &mut [Mask]) {
         for ((body, x), motion) in self.bodies.iter().zip(&self.x).zip(&self.motions) {

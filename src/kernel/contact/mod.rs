@@ -117,6 +117,7 @@ impl Contacts {
             }
             if clusters.heat(forces, state, h) {
                 flow(simd, forces, clusters, h);
+                clusters.stop_at_faces(forces, state);
                 clusters.hand_back(state, moved);
             }
         }

@@ -4,6 +4,7 @@
 //! piece is the foot of the perpendicular, or an end. Where that end lies on another one, as on the hollow side of a
 //! corner, a piece fades out over the first centimetres behind it, so that nothing jumps as the foot leaves it.
 
+use super::ON;
 use crate::base::geometry::{Bounds, Polygon, Segment, Vec2, cross};
 use crate::base::lanes::Mask;
 use crate::kernel::barrier::Surface;
@@ -97,6 +98,22 @@ impl Side {
         self.outward != Vec2::zeros()
     }
 
+    /// Where a straight way first meets the piece, which reaches `ON` beyond its ends: the share of the way, the height of
+    /// its beginning over the piece, m, and the unit vector to that side. From inside an edge is not met.
+    pub(super) fn meets(&self, from: Vec2, to: Vec2) -> Option<(f64, f64, Vec2)> {
+        let height = |p: Vec2| cross(self.along, p - self.a);
+        let (before, after) = (height(from), height(to));
+        if before * after > 0.0 || before == 0.0 {
+            return None;
+        }
+        let share = before / (before - after);
+        let foot = (from + (to - from) * share - self.a).dot(&self.along) * self.inverse_square;
+        let length = self.along.norm();
+        let normal = Vec2::new(-self.along.y, self.along.x) * (before.signum() / length);
+        let is_on = (foot - 0.5).abs() * length <= 0.5 * length + ON;
+        (is_on && normal.dot(&self.outward) >= 0.0).then(|| (share, before.abs() / length, normal))
+    }
+
     #[inline(always)]
     pub(super) fn nearest<S: Simd>(&self, part: Part<S>, x: Doubles<S>, y: Doubles<S>) -> Nearest<S> {
         let (px, py) = (x - part.c(self.a.x), y - part.c(self.a.y));
@@ -142,6 +159,21 @@ impl Side {
             fades: self.closed[0] && foot < 0.0 || self.closed[1] && foot > 1.0,
         }
     }
+}
+
+/// As `Side::meets`, of a disc.
+pub(super) fn meets_disc(disc: &Surface, from: Vec2, to: Vec2) -> Option<(f64, f64, Vec2)> {
+    let radius = 0.5 * (disc.bounds.high.x - disc.bounds.low.x);
+    let (start, way) = (from - disc.centre(), to - from);
+    // The first root of |start + share way| = radius.
+    let (square, towards) = (way.dot(&way), -start.dot(&way));
+    let outside = start.dot(&start) - radius * radius;
+    let root = towards * towards - square * outside;
+    if outside <= 0.0 || towards <= 0.0 || root < 0.0 {
+        return None;
+    }
+    let share = outside / (towards + root.sqrt());
+    (share <= 1.0).then(|| (share, start.norm() - radius, (start + way * share) / radius))
 }
 
 /// The nearest point of a disc or, for those inside, of a polygon.

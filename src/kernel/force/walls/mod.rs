@@ -36,7 +36,7 @@ use crate::kernel::edges::squared_distance;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::model::{Barrier, Obstacle, Parameter};
-use face::{Form, Nearest, NearestTo, Side, nearest_of_whole, nearest_of_whole_to, sides_of};
+use face::{Form, Nearest, NearestTo, Side, meets_disc, nearest_of_whole, nearest_of_whole_to, sides_of};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use sharing::{Push, share};
@@ -196,6 +196,20 @@ impl Surfaces {
             Form::Side(side) => side.nearest_to(p),
             Form::Disc | Form::Inside => nearest_of_whole_to(&self.wholes[*barrier as usize], p),
         }
+    }
+
+    /// Where a centre that went straight from one place to another stops: `ON` before the face that it met, or where it began
+    /// if that is nearer; with the unit vector away from the face. `None` where it did not meet it from outside.
+    pub(in crate::kernel) fn stop(&self, face: u32, from: Vec2, to: Vec2) -> Option<(Vec2, Vec2)> {
+        let Face { form, barrier, .. } = &self.faces[face as usize];
+        let (share, height, normal) = match form {
+            Form::Side(side) => side.meets(from, to)?,
+            Form::Disc => meets_disc(&self.wholes[*barrier as usize], from, to)?,
+            // Its edges stop whoever is outside.
+            Form::Inside => return None,
+        };
+        let left = 1.0 - ON / height;
+        Some((from + (to - from) * if left > 0.0 { share * left } else { 0.0 }, normal))
     }
 
     /// The social force of faces on eight bodies, N. Those that touch or may do so within a step are told to `may_touch`,
