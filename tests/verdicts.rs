@@ -143,3 +143,39 @@ estimate E(max<=2 s (speed(wild))) in 0 m/s .. 3 m/s by fixed(trials = 1000)
     let shown = place.call(&["simulate", "a.scn", "--trial", first]);
     assert!(shown.err.contains(&format!("trial {first} diverged at ")), "{}", shown.err);
 }
+
+#[test]
+fn no_shipped_scenario_draws_a_warning() {
+    let everything = "estimate P(F<=0 s true) within 0.4\n";
+    let place = Place::new(&[("any.bltl", everything)]);
+    let any = place.path("any.bltl");
+    let data = recordings();
+    let mut count = 0;
+    for pattern in ["models", "validation", "examples/advise", "examples/cookbook", "examples/evaluate"] {
+        for entry in
+            std::fs::read_dir(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(pattern)).unwrap()
+        {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            let Some(stem) = name.strip_suffix(".scn") else { continue };
+            let model = format!("{pattern}/{name}");
+            let text = std::fs::read_to_string(&model).unwrap();
+            if text.contains("= eth_biwi ") && data.is_none() || text.contains("= stream") {
+                continue;
+            }
+            let beside = [format!("{pattern}/{stem}.bltl"), format!("properties/{stem}.bltl")];
+            let own = beside.iter().find(|path| std::path::Path::new(path).exists());
+            let properties = own.map_or(any.to_str().unwrap(), String::as_str);
+            let mut words = vec!["check", &model, properties, "--forecast"];
+            words.extend(data.iter().flat_map(|data| ["--data", data.to_str().unwrap()]));
+            let said = at_root(&words);
+            // What a property file lacks or says in vain is no matter of the scenario.
+            let about =
+                said.err.lines().filter(|line| line.starts_with("warning[") || line.starts_with("error["));
+            let about: Vec<_> =
+                about.filter(|line| !["W0501", "W0602"].iter().any(|code| line.contains(code))).collect();
+            assert!(about.is_empty(), "{model}: {about:?}");
+            count += 1;
+        }
+    }
+    assert!(count > 40, "{count}");
+}

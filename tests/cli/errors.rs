@@ -310,12 +310,18 @@ fn a_step_that_is_too_long_for_the_forces_is_warned_of_once() {
     let preset = |name: &str| format!("kind adult: sfm preset {name}");
     let helbing = preset("helbing2000");
     let heavy = "kind adult: sfm preset helbing2000 { mass = uniform(50 kg, 90 kg)  A = 4000 N }";
-    let cases: [(&str, &str, &[&str]); 8] = [
+    let fast = "kind adult: sfm preset helbing2000 { speed = 5 m/s }";
+    let steep = "kind adult: sfm preset helbing2000 { speed = 3 m/s  A = 500 N  B = 0.02 m }";
+    let cases: [(&str, &str, &[&str]); 12] = [
         ("0.1 s", &helbing, &["`adult` (at most 0.0461 s)", "`step = 0.025 s`", "n = 6"]),
         ("1 s / 10", &helbing, &["`step = 0.025 s`"]),
         ("1 s / 20", &helbing, &["`step = 0.025 s`"]),
         ("1 s / 15", &helbing, &["`step = 1 s / 30`"]),
-        ("0.1 s", &preset("smc1"), &["(at most 0.025 s)", "`step = 0.025 s`", "tenth of `tau`"]),
+        ("0.1 s", &preset("smc1"), &["(at most 0.05 s)", "`step = 0.05 s`", "fifth of `tau`"]),
+        ("0.05 s", &preset("smc1"), &[]),
+        ("0.04 s", fast, &["(at most 0.0349 s)", "`step = 0.02 s`", "overlap by 0.10 m", "n = 3"]),
+        ("0.025 s", fast, &[]),
+        ("0.025 s", steep, &["(at most 0.0156 s)", "`step = 0.0125 s`"]),
         ("0.05 s", heavy, &["(at most 0.0258 s)", "`step = 0.025 s`"]),
         ("0.025 s", heavy, &[]),
         ("0.04 s", &helbing, &[]),
