@@ -200,3 +200,35 @@ fn trials_without_a_way_are_counted_and_the_first_is_named() {
         result.warnings
     );
 }
+
+#[test]
+fn a_way_around_the_outside_of_the_walls_is_named() {
+    let corridor = "wall (0, 0) -- (12, 0)\nwall (0, 3) -- (12, 3)\nregion door: rect (11, 0.5) .. (12, 2.5)";
+    let warnings = |more: &str, agent: &str| {
+        let text = format!(
+            "horizon = 4 s\nstep = 0.04 s\nscene {{ {corridor}\n{more} }}\nkind person: sfm preset smc1\n{agent}"
+        );
+        let options = Options::default().max_trials(8);
+        let report = Model::parse(&text).unwrap().check("estimate P(F<=1 s (me in door))", &options).unwrap();
+        report.warnings().to_string()
+    };
+    let me = "agent me: person { at = (3, 1.5)  route = door }";
+    let said = warnings("wall (10.5, 0) -- (10.5, 3)", me);
+    let wanted = "the shortest way of `me` from its start to `door` leads around the outside of the walls: 17.02 m instead of 8 m";
+    assert!(said.contains("W0803") && said.contains(wanted) && said.contains("model.scn:8:25"), "{said}");
+    assert!(said.contains("close the open ends with walls"), "{said}");
+    // From an area, at a corner of an obstacle, from goal to goal.
+    let area = "agent me: person { at = uniform in rect (1, 1) .. (8, 2)  route = door }";
+    assert!(warnings("obstacle rect (10, 0) .. (10.5, 3)", area).contains("W0803"));
+    let detour = "agent me: person { at = (9, 1.5)  route = (9.5, 1.5) -> door }";
+    assert!(warnings("wall (10.5, 0) -- (10.5, 3)", detour).contains("from (9.5, 1.5) m to `door`"));
+    // A door in the wall; a way outside that is not much longer; a wall in the open; a goal outside.
+    for (more, agent) in [
+        ("wall (10.5, 0) -- (10.5, 1)\nwall (10.5, 2) -- (10.5, 3)", me),
+        ("wall (2, 0) -- (2, 3)", "agent me: person { at = (0.5, 1.5)  route = door }"),
+        ("", "agent me: person { at = (6, -0.5)  route = door }"),
+        ("wall (10.5, 0) -- (10.5, 3)", "agent me: person { at = (9, 1.5)  route = (14, 1.5) }"),
+    ] {
+        assert_eq!(warnings(more, agent), "", "{more} {agent}");
+    }
+}

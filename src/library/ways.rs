@@ -60,7 +60,7 @@ pub fn is_refused(found: &[Diagnostic]) -> bool {
 
 fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
     let place = world.place_of(doubt.agent);
-    if doubt.impossible {
+    if doubt.code == Code::E0803 {
         let error = match place {
             Some(span) => Diagnostic::error(Code::E0803, span, doubt.said.as_str()),
             None => Diagnostic::placeless(Code::E0803, doubt.said.as_str()),
@@ -75,10 +75,10 @@ fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
         return error.hint(doubt.hint.as_str());
     }
     let warning = match place {
-        Some(span) => Diagnostic::warning(Code::W0802, span, doubt.said.as_str()),
+        Some(span) => Diagnostic::warning(doubt.code, span, doubt.said.as_str()),
         None => Diagnostic {
             severity: Severity::Warning,
-            ..Diagnostic::placeless(Code::W0802, doubt.said.as_str())
+            ..Diagnostic::placeless(doubt.code, doubt.said.as_str())
         },
     };
     warning.hint(doubt.hint.as_str())

@@ -2,9 +2,11 @@
 //! of a start, and those that only some can.
 
 use super::atlas::Atlas;
+use super::way::ShortestWay;
 use super::wayfinder::is_drawn;
-use crate::base::geometry::{Shape, Vec2};
+use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::model::{Agent, AgentId, Goal, Obstacle, Parameter, Position, Route, Scenario, Scene, Sight};
+use crate::syntax::codes::Code;
 
 /// A start or goal is looked at in so many rows of so many places; and in more where none of these has a way.
 const ROWS: u32 = 8;
@@ -18,8 +20,8 @@ const WIDEST: f64 = 0.999;
 pub struct Doubt {
     /// The first of them.
     pub agent: AgentId,
-    /// Whether no trial can have a way.
-    pub impossible: bool,
+    /// E0803 if no trial can have a way; else a warning.
+    pub code: Code,
     /// In words.
     pub said: String,
     /// The barrier that is in between, by its number, if one is.
@@ -29,6 +31,8 @@ pub struct Doubt {
 }
 
 const MEND: &str = "move the goal or the start, open the barrier, or write `wayfinding = straight` in the kind to go straight whatever is in the way";
+const CLOSE: &str =
+    "open the wall that is in between, or close the open ends with walls; see `smc explain W0803`";
 const EXPLAINED: &str = "agents without a way stand still; see `smc explain W0802`";
 
 /// Places of a shape: rows of a grid, and a point inside.
@@ -141,7 +145,7 @@ pub(super) fn doubts(
         };
         let known = out.len();
         of_agent(atlas, scenario, (first, &who), &mut out);
-        if !out[known..].iter().any(|doubt| doubt.impossible) {
+        if !out[known..].iter().any(|doubt| doubt.code == Code::E0803) {
             out.extend(planned(first, &who));
         }
     }
@@ -162,11 +166,14 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                 let count = places.iter().filter(|p| atlas.way(**p, goal, radius).is_some()).count();
                 (count, places.len())
             };
+            let known = out.len();
             let mut doubt = |said| {
                 let hint = EXPLAINED.to_owned();
-                out.push(Doubt { agent: id, impossible: false, said, between: None, hint });
+                out.push(Doubt { agent: id, code: Code::W0802, said, between: None, hint });
             };
-            let (some, all) = with_way(ROWS, least);
+            let places = from.places(scene, ROWS);
+            let ways: Vec<_> = places.iter().map(|p| atlas.way(*p, goal, least)).collect();
+            let (some, all) = (ways.iter().flatten().count(), ways.len());
             if some == 0 && (all == 1 || with_way(MORE_ROWS, least).0 == 0) {
                 let inside = into(scene, goal);
                 let between = if inside.is_none() { enclosing(scene, from, least, goal) } else { None };
@@ -177,7 +184,7 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                     (None, None) => String::new(),
                 };
                 let said = format!("no way leads {who} from {from_name} to {name}{why}");
-                out.push(Doubt { agent: id, impossible: true, said, between, hint: MEND.to_owned() });
+                out.push(Doubt { agent: id, code: Code::E0803, said, between, hint: MEND.to_owned() });
                 return;
             }
             if some < all {
@@ -197,7 +204,43 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                     "{name}, a goal of {who}, is {near} m from a barrier, nearer than a radius of {radius} m"
                 ));
             }
+            let long = |(p, way): (&Vec2, &Option<ShortestWay>)| {
+                let (way, straight) = (way.as_ref()?, distance(scene, *p, goal));
+                let is_long = way.length >= 2.0 * straight && leaves_walls(scene, *p, way);
+                is_long.then(|| (number(way.length), number(straight)))
+            };
+            if out.len() == known
+                && let Some((length, straight)) = places.iter().zip(&ways).find_map(long)
+            {
+                let said = format!(
+                    "the shortest way of {who} from {from_name} to {name} leads around the outside of the walls: {length} m instead of {straight} m"
+                );
+                let hint = CLOSE.to_owned();
+                out.push(Doubt { agent: id, code: Code::W0803, said, between: None, hint });
+            }
         }
+    }
+}
+
+/// Whether a way between two places among the barriers leaves the rectangle around all barriers.
+fn leaves_walls(scene: &Scene, from: Vec2, way: &ShortestWay) -> bool {
+    let bounds = scene.barriers.iter().filter_map(|barrier| barrier.obstacle.bounds());
+    let around = Bounds::around(bounds.flat_map(|bounds| [bounds.low, bounds.high]));
+    let is_in =
+        |around: &Bounds, p: Vec2| around.low.inf(&p) == around.low && around.high.sup(&p) == around.high;
+    scene.periods.are_none()
+        && around.is_some_and(|around| {
+            is_in(&around, from)
+                && is_in(&around, way.end)
+                && way.points().iter().any(|p| !is_in(&around, *p))
+        })
+}
+
+/// Distance from a place to a goal, m.
+fn distance(scene: &Scene, p: Vec2, goal: &Goal) -> f64 {
+    match goal {
+        Goal::Point(point) => (p - point).norm(),
+        Goal::Region(id) => scene.regions[id.0 as usize].shape.distance(p),
     }
 }
 

@@ -6,6 +6,7 @@ use crate::base::geometry::Vec2;
 use crate::model::{AgentId, RoadmapRule, Scenario};
 use crate::route::roadmap::DistanceField;
 use crate::route::survey::{Doubt, Place, Stretch, stretches};
+use crate::syntax::codes::Code;
 
 /// A start is looked at in so many rows of so many places, and a goal.
 const ROWS: u32 = 8;
@@ -31,7 +32,7 @@ pub fn doubt(terrains: &Terrains, scenario: &Scenario, seed: u64, id: AgentId, w
         if number < 2 {
             let vertices = if number == 1 { "only one vertex" } else { "no vertices" };
             let said = format!("the roadmap of `{}` has {vertices}", planner.kind);
-            return Some(Doubt { agent: id, impossible: false, said, between: None, hint: hint(&terrain) });
+            return Some(Doubt { agent: id, code: Code::W0802, said, between: None, hint: hint(&terrain) });
         }
         let Some((from, from_name)) = origin else { continue };
         let places = free(from, ROWS);
@@ -45,7 +46,8 @@ pub fn doubt(terrains: &Terrains, scenario: &Scenario, seed: u64, id: AgentId, w
             0 => format!("{path} from {from_name} to {name}"),
             _ => format!("{path} to {name} from {without} of {all} places of {from_name}"),
         };
-        return Some(Doubt { agent: id, impossible: count == 0, said, between: None, hint: hint(&terrain) });
+        let code = if count == 0 { Code::E0803 } else { Code::W0802 };
+        return Some(Doubt { agent: id, code, said, between: None, hint: hint(&terrain) });
     }
     None
 }
