@@ -255,6 +255,169 @@ fn a_drawing_of_lines_is_joined_and_has_its_unit_and_origin() {
     );
 }
 
+#[test]
+fn a_room_is_on_each_of_its_levels() {
+    let room = |tags: &str| {
+        let corridor = rectangle(0., 0., 10., 5.);
+        let plan = geojson(&[
+            (r#""indoor":"corridor","level":"0""#, "Polygon", &corridor),
+            (tags, "Polygon", &rectangle(4., 1., 6., 4.)),
+        ]);
+        move |filter: &str| {
+            let import = format!("import \"a.geojson\" where {filter}");
+            scene(&import, &[("a.geojson", &plan)]).barriers.len() - usize::from(filter.contains("\"0\""))
+        }
+    };
+    for (tags, levels) in [
+        (r#""indoor":"room","level":"0;1""#, vec!["0", "1"]),
+        (r#""indoor":"room","level":"-1;2-4""#, vec!["-1", "2", "3", "4"]),
+        (r#""indoor":"room","level":"-2--1""#, vec!["-2", "-1"]),
+        (r#""indoor":"room","level":"-1-1""#, vec!["-1", "0", "1"]),
+        (r#""indoor":"room","level":"1","repeat_on":"3-4""#, vec!["1", "3", "4"]),
+        (r#""indoor":"room","level":"0.5""#, vec!["0.5"]),
+    ] {
+        let count = room(tags);
+        for level in ["-2", "-1", "0", "0.5", "1", "2", "3", "4"] {
+            let found = count(&format!("level == \"{level}\""));
+            assert_eq!(found, usize::from(levels.contains(&level)), "{tags} {level}");
+            assert_eq!(
+                count(&format!("level == \"0\" | level != \"{level}\"")),
+                usize::from(!levels.contains(&level) || levels.contains(&"0")),
+                "{tags} {level}"
+            );
+        }
+    }
+    // In a file with numbers and texts, each matches either.
+    let mixed = geojson(&[
+        (r#""indoor":"corridor","level":0"#, "Polygon", &rectangle(0., 0., 10., 5.)),
+        (r#""indoor":"room","level":"0;1""#, "Polygon", &rectangle(4., 1., 6., 4.)),
+    ]);
+    for filter in ["level == 0", "level == \"0\""] {
+        let import = format!("import \"a.geojson\" where {filter}");
+        assert_eq!(scene(&import, &[("a.geojson", &mixed)]).barriers.len(), 2, "{filter}");
+    }
+}
+
+/// Gaps in the pieces on one line: along `x = at`, or along `y = at`, cm.
+fn gaps(found: &[[i64; 4]], axis: usize, at: i64, (from, to): (i64, i64)) -> Vec<(i64, i64)> {
+    let mut on: Vec<(i64, i64)> = found
+        .iter()
+        .filter(|s| s[axis] == at && s[axis + 2] == at)
+        .map(|s| (s[1 - axis], s[3 - axis]))
+        .collect();
+    on.sort_unstable();
+    let (mut gaps, mut end) = (Vec::new(), from);
+    for (low, high) in on.into_iter().chain([(to, to)]) {
+        if low > end {
+            gaps.push((end, low));
+        }
+        end = end.max(high);
+    }
+    gaps
+}
+
+#[test]
+fn a_door_where_walls_meet_opens_one_of_them_beside_the_corner() {
+    let two = |door: &str, tags: &'static str| {
+        let plan = geojson(&[
+            (r#""indoor":"room","level":"0""#, "Polygon", &rectangle(0., 0., 5., 4.)),
+            (r#""indoor":"room","level":"0""#, "Polygon", &rectangle(5., 0., 10., 4.)),
+            (tags, "Point", door),
+        ]);
+        let found = centimetres(&scene("import \"a.geojson\" where level == \"0\"", &[("a.geojson", &plan)]));
+        [gaps(&found, 0, 500, (0, 400)), gaps(&found, 1, 0, (0, 1000)), gaps(&found, 0, 0, (0, 400))]
+    };
+    let door = r#""door":"yes","level":"0""#;
+    // The wall between the rooms ends at the outer one.
+    for at in ["[5,0]", "[5,0.005]", "[4.997,0]"] {
+        assert_eq!(two(at, door), [vec![(0, 90)], vec![], vec![]], "{at}");
+    }
+    assert_eq!(two("[5,4]", door), [vec![(310, 400)], vec![], vec![]]);
+    // At the outer corner both walls end: the longer one is opened.
+    assert_eq!(two("[0,0]", door), [vec![], vec![(0, 90)], vec![]]);
+    assert_eq!(two("[5.3,0]", door), [vec![], vec![(500, 590)], vec![]]);
+    // A door without a level belongs to the wall that it lies on.
+    let without = r#""door":"yes""#;
+    assert_eq!(two("[5,2]", without), [vec![(155, 245)], vec![], vec![]]);
+    assert_eq!(two("[5,2]", r#""door":"yes","level":null"#), [vec![(155, 245)], vec![], vec![]]);
+    assert_eq!(two("[5,2]", r#""door":"yes","level":"1""#), [vec![], vec![], vec![]]);
+    assert_eq!(two("[50,2]", without), [vec![], vec![], vec![]]);
+    // Where two walls cross, neither ends: the longest one is opened on the side with more room.
+    let cross = geojson(&[
+        (r#""indoor":"wall""#, "LineString", "[[0,0],[9,0]]"),
+        (r#""indoor":"wall""#, "LineString", "[[4,-3],[4,3]]"),
+        (door, "Point", "[4,0]"),
+    ]);
+    let found = centimetres(&scene("import \"a.geojson\"", &[("a.geojson", &cross)]));
+    assert_eq!((gaps(&found, 1, 0, (0, 900)), gaps(&found, 0, 400, (-300, 300))), (vec![(400, 490)], vec![]));
+}
+
+#[test]
+fn walkable_areas_within_the_snap_are_one() {
+    for (gap, snap, is_open) in
+        [(0.005, "5 cm", true), (0.04, "5 cm", true), (0.06, "5 cm", false), (0.06, "10 cm", true)]
+    {
+        let right = 5.0 + gap;
+        let areas = format!(
+            "MULTIPOLYGON(((0 0, 5 0, 5 8, 0 8, 0 0)), (({right} 2, 9 2, 9 6, {right} 6, {right} 2)))"
+        );
+        let found = scene(&format!("import \"a.wkt\" as walkable {{ snap = {snap} }}"), &[("a.wkt", &areas)]);
+        let far = reached(&found, Vec2::new(1.0, 1.0), 0.3, Vec2::new(-1.0, -1.0), Vec2::new(10.0, 9.0));
+        assert_eq!(far.contains(&(80, 40)), is_open, "{gap} {snap}");
+        assert!(!far.contains(&(80, 10)), "{gap} {snap}");
+    }
+}
+
+#[test]
+fn what_a_drawing_hides_is_no_wall_and_is_counted() {
+    let layer = |name: &str, flags: &str, color: &str| format!("0 LAYER 2 {name} 70 {flags} 62 {color}");
+    let tables =
+        [layer("W", "0", "7"), layer("OFF", "0", "-7"), layer("ICE", "1", "7"), layer("LOCK", "4", "7")];
+    let line = |layer: &str, more: &str| format!("0 LINE 8 {layer} {more} 10 0 20 0 11 5 21 0");
+    let lines = [
+        line("W", ""),
+        line("OFF", ""),
+        line("ICE", ""),
+        line("LOCK", ""),
+        line("W", "60 1"),
+        line("W", "60 0"),
+    ];
+    let text = dxf("6", &lines.join(" "));
+    let tables = format!("0 SECTION 2 TABLES 0 TABLE 2 LAYER {} 0 ENDTAB 0 ENDSEC", tables.join(" "));
+    let head = tables.split(' ').collect::<Vec<_>>().join("\n") + "\n";
+    let place = Place::new(&[("plan.dxf", &(head + &text))]);
+    let call = |import: &str| {
+        place.write("a.scn", format!("{FRAME}scene {{ {import} {{ snap = 1 mm }} }}\n").as_bytes());
+        place.call(&["show", "a.scn"])
+    };
+    let said = call("import \"plan.dxf\"");
+    let wanted = "1 LINE hidden on `ICE`, 1 LINE hidden on `OFF`, 1 LINE hidden on `W`";
+    assert!(said.err.contains("W0704") && said.err.contains(wanted), "{}", said.err);
+    let said = call("import \"plan.dxf\" where layer == \"LOCK\"");
+    assert!(said.err.is_empty() && said.out.contains("wall LOCK"), "{}", said.err);
+    let said = call("import \"plan.dxf\" where layer == \"OFF\"");
+    assert!(said.err.contains("1 LINE hidden on `OFF`") && !said.out.contains("wall"), "{}", said.err);
+}
+
+#[test]
+fn thousands_of_lines_from_one_point_are_refused_before_the_work() {
+    let end = |k: u32| {
+        let (sin, cos) = smc::base::math::sin_cos_turn(f64::from(k) / 2100.0);
+        (9.0 * cos, 20.0 + 9.0 * sin)
+    };
+    let lines: String =
+        (0..2100).map(|k| format!("LINESTRING (0 20, {} {})\n", end(k).0, end(k).1)).collect();
+    let walls: String =
+        (0..2100).map(|k| format!("wall (0, 20) -- ({}, {})\n", end(k).0, end(k).1)).collect();
+    let place = Place::new(&[("star.wkt", &lines)]);
+    for scene in ["import \"star.wkt\"", "import \"star.wkt\" { snap = 1 m }", &walls] {
+        place.write("a.scn", format!("{FRAME}scene {{ {scene} }}\n").as_bytes());
+        let said = place.call(&["show", "a.scn"]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert_eq!(said.err.matches("error[E0923]: too many walls meet").count(), 1, "{}", said.err);
+    }
+}
+
 /// What is said of each import, with its place and its hint.
 #[test]
 fn what_is_wrong_with_a_drawing_is_said() {
@@ -270,6 +433,14 @@ fn what_is_wrong_with_a_drawing_is_said() {
         ("unitless.dxf", dxf("0", lines)),
         ("tiny.dxf", dxf("4", "0 LINE 8 A 10 0 20 0 11 60 21 0 0 LINE 8 A 10 0 20 0 11 0 21 30")),
         ("broken.dxf", dxf("4", "0 LINE 8 A 10 0 20 0 0 CIRCLE 8 A 10 0 20 zero 40 1")),
+        ("arc.dxf", dxf("6", "0 ARC 8 A 10 0 20 0 40 5 50 0 51 1e300")),
+        ("gap.wkt", "LINESTRING (0 0, 4 0) LINESTRING (4.8 0, 9 0)".to_owned()),
+        ("swapped.wkt", "LINESTRING (48.1490 11.5675, 48.1492 11.5680)".to_owned()),
+        ("east.wkt", "LINESTRING (35.6800 139.7600, 35.6804 139.7600)".to_owned()),
+        ("plan.dwg", "AC1032\0".to_owned()),
+        ("plan.ifc", "ISO-10303-21;".to_owned()),
+        ("number.geojson", geojson(&[(r#""indoor":"room","level":0"#, "Polygon", &room)])),
+        ("text.geojson", geojson(&[(r#""indoor":"room","level":"0;1""#, "Polygon", &room)])),
         ("binary.dxf", "AutoCAD Binary DXF\r\n\u{1a}\0".to_owned()),
         ("bow.geojson", with((r#""indoor":"room""#, "Polygon", "[[[0,0],[2,2],[2,0],[0,2],[0,0]]]"))),
         ("far.geojson", with((r#""door":"yes","name":"side door""#, "Point", "[20,3]"))),
@@ -319,6 +490,18 @@ fn what_is_wrong_with_a_drawing_is_said() {
         r#"import "width.geojson""#,
         r#"import "area.geojson""#,
         r#"import "mm.geojson""#,
+        r#"import "arc.dxf""#,
+        r#"import "gap.wkt" { snap = 1 m }"#,
+        r#"import "gap.wkt" { snap = 40 cm }"#,
+        r#"import "swapped.wkt" { projection = local  origin = (11.5678, 48.1491) }"#,
+        r#"import "swapped.wkt" { projection = local  origin = (11.6, 48.2) }"#,
+        r#"import "east.wkt" { projection = local }"#,
+        r#"import "plan.dwg""#,
+        r#"import "plan.ifc""#,
+        r#"import "number.geojson" where level == "0""#,
+        r#"import "number.geojson" where level == "-1" | indoor == "door""#,
+        r#"import "text.geojson" where level == 0"#,
+        r#"import "text.geojson" where level == "2""#,
     ] {
         place.write("a.scn", format!("{FRAME}scene {{ {import} }}\n").as_bytes());
         let said = place.call(&["show", "a.scn"]);

@@ -349,7 +349,7 @@ proptest! {
 fn planned(mut features: Vec<smc::data::geometry::Feature>) {
     let placement = Placement::Plane { unit: 1.0, origin: Vec2::zeros(), is_stated: true };
     let _ = placement.place(&mut features);
-    let Ok(plan) = plan(&features, 1.0, false) else { return };
+    let Ok(plan) = plan(&features, (1.0, 1e-3), false) else { return };
     let mut walls: Vec<Vec<smc::base::geometry::Segment>> = plan
         .barriers
         .into_iter()

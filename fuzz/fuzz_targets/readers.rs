@@ -25,7 +25,7 @@ fuzz_target!(|text: &str| {
         for walkable in [false, true] {
             let Ok(mut features) = features.clone() else { continue };
             let _ = Placement::Plane { unit: 1.0, origin: Vec2::zeros(), is_stated: false }.place(&mut features);
-            let Ok(plan) = plan(&features, 1.0, walkable) else { continue };
+            let Ok(plan) = plan(&features, (1.0, 1e-3), walkable) else { continue };
             let mut walls: Vec<_> = plan.barriers.into_iter().filter_map(|(_, form)| match form {
                 smc::data::geometry::Form::Wall(pieces) => Some(pieces),
                 smc::data::geometry::Form::Solid(_) => None,

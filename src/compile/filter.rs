@@ -1,20 +1,17 @@
 //! Filters of imports: comparisons of a feature's properties, joined by `&`, `|`, `!`.
 
-use crate::data::geometry::PropertyValue;
+use crate::data::geometry::{PropertyValue, indoor::may_be_door};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::cmp::Ordering;
+use std::mem::discriminant;
 
-/// A side of a comparison.
-#[derive(Clone, Debug, PartialEq)]
-enum Side {
-    Text(String),
-    Number(f64),
-    Bool(bool),
-    /// The feature has no such property.
-    Absent,
-}
+/// Most values of a property that a message lists.
+const MOST_SEEN: usize = 8;
+/// Most levels that one range of them has.
+const MOST_LEVELS: usize = 1000;
 
 /// A name and properties.
 pub(super) type Described<'f> = (&'f str, &'f [(String, PropertyValue)]);
@@ -29,25 +26,32 @@ pub(super) fn selects(filter: &Expr, feature: Described<'_>) -> Result<bool, Dia
         // What compares no property says nothing of a feature.
         ExprKind::Binary(_, a, b) if !names(a).chain(names(b)).any(|_| true) => Err(wrong(filter)),
         ExprKind::Binary(op, a, b) => {
-            let (a, b) = (side(a, feature)?, side(b, feature)?);
-            let order = match (&a, &b) {
-                (Side::Text(a), Side::Text(b)) => Some(a.cmp(b)),
-                (Side::Number(a), Side::Number(b)) => a.partial_cmp(b),
-                (Side::Bool(a), Side::Bool(b)) => Some(a.cmp(b)),
-                _ => None,
-            };
+            let (a, b) = (values(a, feature)?, values(b, feature)?);
+            let any =
+                |is: fn(Ordering) -> bool| a.iter().any(|a| b.iter().any(|b| order(a, b).is_some_and(is)));
             match op {
-                BinaryOp::Equal => Ok(order.is_some_and(std::cmp::Ordering::is_eq)),
-                BinaryOp::Unequal => Ok(!order.is_some_and(std::cmp::Ordering::is_eq)),
-                BinaryOp::Less => Ok(order.is_some_and(std::cmp::Ordering::is_lt)),
-                BinaryOp::AtMost => Ok(order.is_some_and(std::cmp::Ordering::is_le)),
-                BinaryOp::Greater => Ok(order.is_some_and(std::cmp::Ordering::is_gt)),
-                BinaryOp::AtLeast => Ok(order.is_some_and(std::cmp::Ordering::is_ge)),
+                BinaryOp::Equal => Ok(any(Ordering::is_eq)),
+                BinaryOp::Unequal => Ok(!any(Ordering::is_eq)),
+                BinaryOp::Less => Ok(any(Ordering::is_lt)),
+                BinaryOp::AtMost => Ok(any(Ordering::is_le)),
+                BinaryOp::Greater => Ok(any(Ordering::is_gt)),
+                BinaryOp::AtLeast => Ok(any(Ordering::is_ge)),
                 _ => Err(wrong(filter)),
             }
         }
         _ => Err(wrong(filter)),
     }
+}
+
+/// Whether the filter selects a door without a level once it is on a level that the filter names.
+pub(super) fn selects_door(filter: &Expr, (name, properties): Described<'_>) -> bool {
+    let is_set = |(name, value): &(String, _)| name == "level" && *value != PropertyValue::Null;
+    let on = |level| [&[("level".to_owned(), level)], properties].concat();
+    may_be_door(properties)
+        && !properties.iter().any(is_set)
+        && compared(filter).into_iter().any(|compared| {
+            compared.name == "level" && selects(filter, (name, &on(compared.value))).unwrap_or(false)
+        })
 }
 
 /// The properties that a filter names, and where.
@@ -60,41 +64,106 @@ pub(super) fn names(filter: &Expr) -> Box<dyn Iterator<Item = (&str, Span)> + '_
     }
 }
 
-/// The texts that a filter compares a property with, and where.
-pub(super) fn texts<'f>(
-    filter: &'f Expr,
-    property: &'f str,
-) -> Box<dyn Iterator<Item = (&'f str, Span)> + 'f> {
-    match &filter.kind {
-        ExprKind::Unary(_, inner) => texts(inner, property),
-        ExprKind::Binary(_, a, b) => match (&a.kind, &b.kind) {
-            (ExprKind::Name(name), ExprKind::Text(text)) if name == property => {
-                Box::new(std::iter::once((text.as_str(), b.span)))
+/// A comparison of a property with a value, and what features have.
+pub(super) struct Compared<'f> {
+    pub(super) name: &'f str,
+    pub(super) value: PropertyValue,
+    /// Where the value stands, and where the comparison.
+    pub(super) spans: [Span; 2],
+    /// Some values of features.
+    pub(super) seen: Vec<PropertyValue>,
+    /// Whether a feature has a value of this type.
+    pub(super) fits: bool,
+}
+
+impl<'f> Compared<'f> {
+    fn new(name: &'f str, value: PropertyValue, spans: [Span; 2]) -> Self {
+        Self { name, value, spans, seen: Vec::new(), fits: false }
+    }
+
+    /// Notes the value that a feature has.
+    pub(super) fn see(&mut self, properties: &[(String, PropertyValue)]) {
+        for (_, value) in properties.iter().filter(|(name, _)| name == self.name) {
+            self.fits |= discriminant(value) == discriminant(&self.value);
+            if *value != PropertyValue::Null && self.seen.len() < MOST_SEEN && !self.seen.contains(value) {
+                self.seen.push(value.clone());
             }
-            _ => Box::new(texts(a, property).chain(texts(b, property))),
-        },
-        _ => Box::new(std::iter::empty()),
+        }
     }
 }
 
-fn side(expr: &Expr, feature: Described<'_>) -> Result<Side, Diagnostic> {
-    match &expr.kind {
-        ExprKind::Text(text) => Ok(Side::Text(text.clone())),
-        ExprKind::Bool(value) => Ok(Side::Bool(*value)),
-        ExprKind::Quantity(q) if q.unit.is_none() => Ok(Side::Number(q.value.to_f64())),
-        ExprKind::Unary(UnaryOp::Minus, inner) => match side(inner, feature)? {
-            Side::Number(value) => Ok(Side::Number(-value)),
-            _ => Err(wrong(expr)),
+/// The comparisons of a filter.
+pub(super) fn compared(filter: &Expr) -> Vec<Compared<'_>> {
+    match &filter.kind {
+        ExprKind::Unary(_, inner) => compared(inner),
+        ExprKind::Binary(_, a, b) => match (&a.kind, literal(b), literal(a), &b.kind) {
+            (ExprKind::Name(name), Some(value), ..) => {
+                vec![Compared::new(name, value, [b.span, filter.span])]
+            }
+            (.., Some(value), ExprKind::Name(name)) => {
+                vec![Compared::new(name, value, [a.span, filter.span])]
+            }
+            _ => compared(a).into_iter().chain(compared(b)).collect(),
         },
-        ExprKind::Name(name) if name == "name" => Ok(Side::Text(feature.0.to_owned())),
-        ExprKind::Name(name) => Ok(match feature.1.iter().find(|(n, _)| n == name).map(|(_, v)| v) {
-            Some(PropertyValue::Text(text)) => Side::Text(text.clone()),
-            Some(PropertyValue::Number(value)) => Side::Number(*value),
-            Some(PropertyValue::Bool(value)) => Side::Bool(*value),
-            Some(PropertyValue::Null | PropertyValue::Other(_)) | None => Side::Absent,
-        }),
-        _ => Err(wrong(expr)),
+        _ => Vec::new(),
     }
+}
+
+fn literal(expr: &Expr) -> Option<PropertyValue> {
+    match &expr.kind {
+        ExprKind::Text(text) => Some(PropertyValue::Text(text.clone())),
+        ExprKind::Bool(value) => Some(PropertyValue::Bool(*value)),
+        ExprKind::Quantity(q) if q.unit.is_none() => Some(PropertyValue::Number(q.value.to_f64())),
+        ExprKind::Unary(UnaryOp::Minus, inner) => match literal(inner)? {
+            PropertyValue::Number(value) => Some(PropertyValue::Number(-value)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The order of two values of one type.
+fn order(a: &PropertyValue, b: &PropertyValue) -> Option<Ordering> {
+    let is_value = !matches!(a, PropertyValue::Null | PropertyValue::Other(_));
+    if is_value && discriminant(a) == discriminant(b) { a.partial_cmp(b) } else { None }
+}
+
+/// A value as written, or the values of a property: a feature may be on several levels.
+fn values(expr: &Expr, (name, properties): Described<'_>) -> Result<Vec<PropertyValue>, Diagnostic> {
+    let ExprKind::Name(property) = &expr.kind else {
+        return literal(expr).map(|value| vec![value]).ok_or_else(|| wrong(expr));
+    };
+    let of = |property: &str| properties.iter().find(|(n, _)| n == property).map(|(_, value)| value.clone());
+    let mut found: Vec<PropertyValue> = match property.as_str() {
+        "name" => vec![PropertyValue::Text(name.to_owned())],
+        property => of(property).into_iter().collect(),
+    };
+    if property == "level" {
+        found.extend([of("level"), of("repeat_on")].into_iter().flatten().flat_map(levels));
+    }
+    Ok(found)
+}
+
+/// The levels in a property of OSM, as texts and as numbers: `0;2` is two levels, and `0-2` is three.
+fn levels(value: PropertyValue) -> Vec<PropertyValue> {
+    let text = match value {
+        PropertyValue::Text(text) => text,
+        PropertyValue::Number(level) => level.to_string(),
+        _ => return Vec::new(),
+    };
+    let mut found: Vec<String> = Vec::new();
+    for part in text.split(';').map(str::trim) {
+        // A hyphen at the start is a sign.
+        let hyphen = part.char_indices().skip(1).find(|(_, c)| *c == '-');
+        let end = |text: &str| text.trim().parse::<i32>().ok();
+        match hyphen.and_then(|(k, _)| Some((end(&part[..k])?, end(&part[k + 1..])?))) {
+            Some((low, high)) => found.extend((low..=high).take(MOST_LEVELS).map(|n| n.to_string())),
+            None => found.push(part.to_owned()),
+        }
+    }
+    let numbers: Vec<_> =
+        found.iter().filter_map(|level| level.parse().ok()).map(PropertyValue::Number).collect();
+    found.into_iter().map(PropertyValue::Text).chain(numbers).collect()
 }
 
 fn wrong(expr: &Expr) -> Diagnostic {

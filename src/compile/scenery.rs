@@ -3,12 +3,13 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
-use super::imports::Import;
+use super::imports::{Import, walls};
 use super::lower::DISTRIBUTIONS;
 use super::number::Number;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
+use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr};
 use crate::syntax::codes::Code;
@@ -102,6 +103,15 @@ impl<'a> Elaborator<'a> {
         let first = self.scene.barriers.len();
         self.import_all(&imports, files);
         self.check_imported(items, first);
+        let walls =
+            walls(&mut self.scene.barriers).into_iter().map(|pieces| pieces.clone()).collect::<Vec<_>>();
+        let wall = items.iter().find_map(|item| match item {
+            SceneItem::Wall { span, .. } | SceneItem::Import { span, .. } => Some(*span),
+            _ => None,
+        });
+        if let Some(span) = wall.filter(|_| geometry::is_crowded(&walls, &[], TOUCHING)) {
+            self.crowded(span);
+        }
     }
 
     /// The shape of a region, settled when it is first needed.

@@ -3,7 +3,7 @@
 use super::fields::Import;
 use crate::compile::elaborator::{Elaborator, Lowered};
 use crate::compile::files::{Files, missing};
-use crate::compile::filter;
+use crate::compile::filter::{self, Compared};
 use crate::compile::symbols::unknown;
 use crate::data::geometry::{self, Drawing, Fault, Format, Geometry, GeometryError, PropertyValue};
 use crate::syntax::codes::Code;
@@ -14,6 +14,9 @@ use std::collections::BTreeSet;
 
 /// Most names of properties that a warning lists.
 const MOST_NAMES: usize = 8;
+/// The formats that are read.
+const FORMATS: &str =
+    "imports are GeoJSON (`.geojson`), WKT (`.wkt`) or DXF (`.dxf`); export other drawings as DXF";
 /// Most features that a message names.
 const MOST_NAMED: usize = 5;
 impl Elaborator<'_> {
@@ -43,6 +46,13 @@ impl Elaborator<'_> {
                 Diagnostic::error(Code::E0712, span, text)
                     .hint("leave out `projection` for coordinates in metres")
             }
+            Fault::Swapped => {
+                let has_origin = import.fields.iter().any(|field| field.name.name == "origin");
+                let or_origin = if has_origin { " or in `origin`" } else { "" };
+                let text = format!("latitude and longitude are swapped in the file{or_origin}");
+                Diagnostic::error(Code::E0712, span, text)
+                    .hint("write the longitude first, as GeoJSON, WKT and `origin` have it: `(11.57, 48.15)`")
+            }
             Fault::Extent { size, fits } => {
                 let text = if size < 1.0 {
                     format!("the drawing is only {size:.3} m wide")
@@ -65,6 +75,26 @@ impl Elaborator<'_> {
         self.report(error)
     }
 
+    /// A filter that compares a property with a value of a type that it never has.
+    fn of_another_type(&self, compared: &Compared<'_>) -> Diagnostic {
+        let kind = |value: &PropertyValue| match value {
+            PropertyValue::Text(_) => "a text",
+            PropertyValue::Number(_) => "a number",
+            PropertyValue::Bool(_) => "a truth value",
+            PropertyValue::Null | PropertyValue::Other(_) => "a list",
+        };
+        let bare = |value: &PropertyValue| value.to_string().trim_matches('"').to_owned();
+        let Compared { name, value, spans: [at, whole], seen, .. } = compared;
+        let alike = match &seen[0] {
+            PropertyValue::Text(_) => PropertyValue::Text(bare(value)),
+            first => seen.iter().find(|known| bare(known) == bare(value)).unwrap_or(first).clone(),
+        };
+        let written = self.text(*whole).replacen(self.text(*at).as_str(), &alike.to_string(), 1);
+        let text = format!("`{name}` is {} in this file, not {}", kind(&alike), kind(value));
+        Diagnostic::error(Code::E0305, *at, text)
+            .hint(format!("write `{written}`; the values of `{name}` are {}", listed(seen)))
+    }
+
     /// The drawing in a file. Filters come first: what is wrong with features that are not selected does not matter.
     pub(super) fn drawing(
         &mut self,
@@ -78,19 +108,21 @@ impl Elaborator<'_> {
         let mut known: BTreeSet<String> = BTreeSet::new();
         let mut strange: Vec<(&str, Span)> = import.filter.into_iter().flat_map(filter::names).collect();
         strange.retain(|(name, _)| *name != "name");
+        let mut compared = import.filter.map(filter::compared).unwrap_or_default();
         let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
             total += 1;
+            compared.iter_mut().for_each(|compared| compared.see(properties));
             strange.retain(|(name, _)| !properties.iter().any(|(known, _)| known == name));
             if known.len() < MOST_NAMES {
                 known.extend(properties.iter().map(|(name, _)| name.clone()));
             }
-            match import.filter.map(|f| filter::selects(f, (name, properties))) {
-                Some(Err(error)) => {
+            let Some(filter) = import.filter else { return true };
+            match filter::selects(filter, (name, properties)) {
+                Ok(selected) => selected || filter::selects_door(filter, (name, properties)),
+                Err(error) => {
                     wrong = Some(error);
                     false
                 }
-                Some(Ok(selected)) => selected,
-                None => true,
             }
         };
         let text = match files.get(&path.value) {
@@ -101,9 +133,12 @@ impl Elaborator<'_> {
             Ok(text) if text.trim().is_empty() => Err("the file is empty"),
             text => text,
         };
+        let end = path.value.rsplit_once('.').map_or("", |(_, end)| end);
+        let is_other = format == Format::GeoJson && !end.to_ascii_lowercase().ends_with("json");
+        let formats = |error: Diagnostic| if is_other { error.hint(FORMATS) } else { error };
         let text = match text {
             Ok(text) => text,
-            Err(fault) => return self.report(Diagnostic::error(Code::E0704, span, fault)),
+            Err(fault) => return self.report(formats(Diagnostic::error(Code::E0704, span, fault))),
         };
         let read = geometry::read(format, &text, unit, &mut select);
         if let Some(error) = wrong {
@@ -111,15 +146,19 @@ impl Elaborator<'_> {
         }
         let drawing = match read {
             Ok(drawing) => drawing,
-            Err(errors) => return self.report(unreadable(span, &errors)),
+            Err(errors) => return self.report(formats(unreadable(span, &errors))),
         };
-        for (layer, at) in import.filter.into_iter().flat_map(|f| filter::texts(f, "layer")) {
+        for compared in compared.iter().filter(|compared| compared.name == "layer") {
+            let PropertyValue::Text(layer) = &compared.value else { continue };
             if !drawing.layers.is_empty() && !drawing.layers.contains(layer) {
                 let known = drawing.layers.iter().map(String::as_str);
-                let error = unknown("layer", layer, at, Code::E0201, known);
+                let error = unknown("layer", layer, compared.spans[0], Code::E0201, known);
                 let names: Vec<String> = drawing.layers.iter().take(MOST_NAMES).cloned().collect();
                 return self.report(error.label(format!("the drawing has {}", names.join(", "))));
             }
+        }
+        if let Some(unlike) = compared.iter().find(|compared| !compared.fits && !compared.seen.is_empty()) {
+            return self.report(self.of_another_type(unlike));
         }
         // A property that no feature has equals nothing, and differs from everything.
         let all_known = strange.is_empty() || known.is_empty();
@@ -144,14 +183,19 @@ impl Elaborator<'_> {
                 "the filter after `where` compares properties of features, but these features have none"
                     .to_owned()
             } else {
-                format!(
-                    "the filter after `where` matches no feature; their properties are {}",
-                    names.join(", ")
-                )
+                let known = compared.iter().filter(|compared| !compared.seen.is_empty());
+                let values =
+                    known.map(|of| format!("; the values of `{}` are {}", of.name, listed(&of.seen)));
+                let names = names.join(", ") + &values.collect::<String>();
+                format!("the filter after `where` matches no feature; their properties are {names}")
             }));
         }
         Ok(drawing)
     }
+}
+
+fn listed(values: &[PropertyValue]) -> String {
+    values.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// The text in the bytes of a file. Older DXF is written in the code page of its author, most often Latin-1.

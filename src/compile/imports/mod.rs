@@ -7,6 +7,7 @@ pub(super) use fields::Import;
 
 use super::elaborator::{Elaborator, Lowered};
 use super::files::Files;
+use super::filter;
 use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::data::geometry::{self, Door, Form, Format, Opened, Placement, placement::middle, plan::TOUCHING};
 use crate::model::{Barrier, Obstacle};
@@ -17,28 +18,35 @@ use drawing::{shown, unreadable};
 
 /// Walls that miss each other by less than this distance are reported; walls of a DXF drawing are joined, m.
 const NEAR_MISS: f64 = 0.05;
+/// A wider gap lets a person through, m.
+const PASSABLE: f64 = 0.5;
+
 impl Elaborator<'_> {
     /// Imports all files of a scene. Doors open the walls of all of them.
     pub(super) fn import_all(&mut self, imports: &[Import<'_>], files: &Files) {
         let (first, mut middle) = (self.scene.barriers.len(), None);
-        let mut found: Vec<(Span, Vec<Door>)> = Vec::new();
+        let mut found: Vec<(&Import<'_>, Vec<Door>)> = Vec::new();
         for import in imports {
             let start = self.scene.barriers.len();
             if let Ok(doors) = self.import(import, files, &mut middle) {
-                found.push((import.path.span, doors));
+                found.push((import, doors));
             }
             self.origins.imports.push((start..self.scene.barriers.len(), import.path.span));
         }
         let doors: Vec<Door> = found.iter().flat_map(|(_, doors)| doors.iter().cloned()).collect();
         let mut walls = walls(&mut self.scene.barriers[first..]);
         let mut opened = geometry::open_doors(&mut walls, &doors).into_iter();
-        for (span, doors) in found {
+        for (import, doors) in found {
+            let names_level =
+                import.filter.is_some_and(|filter| filter::names(filter).any(|(name, _)| name == "level"));
             let faults: Vec<String> =
                 doors
                     .iter()
                     .zip(opened.by_ref())
                     .filter_map(|(door, opened)| match opened {
                         Opened::Whole => None,
+                        // The door is on another level.
+                        Opened::Nothing if names_level && !door.has_level => None,
                         Opened::Part(part) => Some(
                             door.place
                                 .error(format!("its wall has {part:.2} m for a door of {:.2} m", door.width)),
@@ -55,7 +63,7 @@ impl Elaborator<'_> {
                     1 => "a door does not open its whole width".to_owned(),
                     count => format!("{count} doors do not open their whole width"),
                 };
-                let warning = Diagnostic::warning(Code::W0703, span, text).label(shown(&faults));
+                let warning = Diagnostic::warning(Code::W0703, import.path.span, text).label(shown(&faults));
                 self.note(warning.hint("a door opens the walls that pass within 0.5 m of it"));
             }
         }
@@ -93,7 +101,8 @@ impl Elaborator<'_> {
         if let Err(fault) = placement.place(&mut drawing.features) {
             return self.misplaced(import, fault);
         }
-        let plan = match geometry::plan(&drawing.features, placement.unit(), import.walkable) {
+        let touching = fields.snap.unwrap_or(TOUCHING);
+        let plan = match geometry::plan(&drawing.features, (placement.unit(), touching), import.walkable) {
             Ok(plan) => plan,
             Err(errors) => return self.report(unreadable(span, &errors)),
         };
@@ -105,7 +114,9 @@ impl Elaborator<'_> {
                 drawing.skipped.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
             let text = format!("the drawing has entities that are not imported: {}", counts.join(", "));
             let warning = Diagnostic::warning(Code::W0704, span, text);
-            self.note(warning.hint("explode blocks and convert curves to polylines, or select other layers"));
+            self.note(warning.hint(
+                "explode blocks, convert curves to polylines, show what is hidden, or select other layers",
+            ));
         }
         let first = self.scene.barriers.len();
         self.scene.barriers.extend(plan.barriers.into_iter().map(|(name, form)| {
@@ -137,8 +148,16 @@ impl Elaborator<'_> {
             .collect();
         let mut walls = walls(imported);
         let mut lines: Vec<Vec<Segment>> = walls.iter().map(|pieces| (**pieces).clone()).collect();
+        if geometry::is_crowded(&lines, &edges, snap.unwrap_or(0.0).max(NEAR_MISS)) {
+            self.scene.barriers.truncate(first);
+            return self.crowded(import.path.span);
+        }
         let is_reported = implied.is_some_and(|implied| implied > TOUCHING) && snap.is_none();
-        let before = if is_reported { geometry::slips(&lines, &edges, NEAR_MISS) } else { None };
+        let before = match snap {
+            Some(snap) if snap > PASSABLE => geometry::slips(&lines, &edges, snap),
+            None if is_reported => geometry::slips(&lines, &edges, NEAR_MISS),
+            _ => None,
+        };
         if let Some(snap) = snap.or(implied) {
             lines = geometry::snap(&lines, &edges, snap);
             for (pieces, joined) in walls.iter_mut().zip(&lines) {
@@ -149,7 +168,7 @@ impl Elaborator<'_> {
             self.scene.barriers.extend(whole);
         }
         let slips = match (snap, before) {
-            (Some(_), _) => None,
+            (Some(_), before) => before.filter(|slips| slips.widest.0 > PASSABLE),
             (None, before) if is_reported => before,
             _ => geometry::slips(&lines, &edges, NEAR_MISS),
         };
@@ -166,18 +185,28 @@ impl Elaborator<'_> {
         );
         let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
         let what: Vec<String> = ends.into_iter().chain(twice).collect();
-        let warning = Diagnostic::warning(
-            Code::W0702,
-            import.path.span,
-            format!("the file has {}", what.join(" and ")),
-        )
-        .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));
         let written = self.rewritten(import, "snap", "5 cm");
-        self.note(warning.hint(if is_reported {
-            format!("they were joined and merged; write `{written}` to accept this, or a smaller `snap`")
+        let (text, at, hint) = if snap.is_some() {
+            let (gap, at) = slips.widest;
+            let text = format!("`snap` closes gaps of up to {gap:.2} m, which may be doors");
+            (text, at, format!("write a smaller `snap`, such as `{written}`"))
         } else {
-            format!("write `{written}` to join and merge them")
-        }));
+            let hint = if is_reported {
+                format!("they were joined and merged; write `{written}` to accept this, or a smaller `snap`")
+            } else {
+                format!("write `{written}` to join and merge them")
+            };
+            (format!("the file has {}", what.join(" and ")), slips.place, hint)
+        };
+        let warning = Diagnostic::warning(Code::W0702, import.path.span, text);
+        self.note(warning.label(format!("for example at ({:.3}, {:.3})", at.x, at.y)).hint(hint));
+    }
+
+    /// Walls that meet in more pairs than forces can look at.
+    pub(super) fn crowded(&mut self, span: Span) {
+        let text = "too many walls meet or nearly meet each other: more than 2 million pairs";
+        let hint = "leave out hatches and other fills, and lines that meet in one point by the thousand";
+        self.note(Diagnostic::error(Code::E0923, span, text).hint(hint));
     }
 
     /// The hint for a point inside an imported polygon that may be where agents move.
@@ -193,7 +222,7 @@ impl Elaborator<'_> {
 }
 
 /// The walls among barriers.
-fn walls(barriers: &mut [Barrier]) -> Vec<&mut Vec<Segment>> {
+pub(super) fn walls(barriers: &mut [Barrier]) -> Vec<&mut Vec<Segment>> {
     let wall = |barrier| match barrier {
         &mut Barrier { obstacle: Obstacle::Wall(ref mut pieces), .. } => Some(pieces),
         _ => None,

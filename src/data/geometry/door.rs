@@ -9,6 +9,8 @@ const REACH: f64 = 0.5;
 const SLANT: f64 = 0.17;
 /// Pieces of walls that lie within this distance of one line are one wall, m.
 const ONE_LINE: f64 = 0.01;
+/// Most walls that are looked at where they meet at a door.
+const MOST_WALLS: usize = 16;
 /// What is shorter is no piece of a wall, m.
 const SHORTEST: f64 = 1e-3;
 
@@ -23,6 +25,8 @@ pub struct Door {
     pub along: Option<Vec2>,
     /// Its width, m.
     pub width: f64,
+    /// Whether it has a property `level`.
+    pub has_level: bool,
 }
 
 /// What a door has opened.
@@ -63,22 +67,58 @@ impl Opening {
         let share = (left / (left - right)).clamp(0.0, 1.0);
         (is_across && meets).then(|| (a + (b - a) * share).dot(&self.along))
     }
+
+    /// Goes as far as the wall does without a gap and without another wall that meets it, to one side of a wall that
+    /// meets it here; whether the wall ends here.
+    fn run<'p>(&mut self, pieces: impl Iterator<Item = &'p Segment> + Clone) -> bool {
+        let sorted = |(a, b): (f64, f64)| if a < b { (a, b) } else { (b, a) };
+        let mut stretches: Vec<_> =
+            pieces.clone().filter_map(|piece| self.stretch(piece, ONE_LINE)).map(sorted).collect();
+        stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut runs: Vec<(f64, f64)> = Vec::new();
+        for (low, high) in stretches {
+            match runs.last_mut() {
+                Some((_, end)) if low <= *end + ONE_LINE => *end = if high > *end { high } else { *end },
+                _ => runs.push((low, high)),
+            }
+        }
+        let distance = |(low, high): &(f64, f64)| if *low > 0.0 { *low } else { (-high).max(0.0) };
+        let nearest = runs.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let (mut low, mut high) = nearest.unwrap_or((0.0, 0.0));
+        let ends_here = low >= -ONE_LINE || high <= ONE_LINE;
+        let mut is_met = false;
+        for t in pieces.filter_map(|piece| self.meeting(piece)) {
+            if t < -ONE_LINE && t > low {
+                low = t;
+            } else if t > ONE_LINE && t < high {
+                high = t;
+            } else {
+                is_met |= t.abs() <= ONE_LINE;
+            }
+        }
+        if is_met && !ends_here {
+            (low, high) = if high < -low { (low, 0.0) } else { (0.0, high) };
+        }
+        (self.low, self.high) = (low, high);
+        ends_here
+    }
 }
 
 /// Opens walls at doors; what each door has opened. All doors are seen before any wall is opened, so two at one place
 /// do what one does.
 ///
 /// A door opens the pieces of walls within 0.5 m that run in the direction of the nearest one. Where it would pass
-/// the end of its wall, or another wall that meets it, it is moved along it.
+/// the end of its wall, or another wall that meets it, it is moved along it. Where walls meet, its wall is one that ends
+/// there, then the longest one.
 pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened> {
     let (mut openings, mut found) = (Vec::new(), Vec::new());
     for door in doors {
         let pieces = walls.iter().flat_map(|wall| wall.iter());
-        let Some(mut opening) = line(door, pieces.clone()) else {
+        let Some(mut opening) = line(door, pieces) else {
             found.push(Opened::Nothing);
             continue;
         };
-        let (low, high) = run(&opening, pieces);
+        let (low, high) = (opening.low, opening.high);
         let half = 0.5 * door.width;
         let is_short = high - low < door.width - ONE_LINE;
         (opening.low, opening.high) = if high - low <= door.width {
@@ -99,51 +139,30 @@ pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened
     found
 }
 
-/// The line of the wall that is nearest to a door, through its point nearest to the door; of equally near ones the
-/// longest.
-fn line<'p>(door: &Door, pieces: impl Iterator<Item = &'p Segment>) -> Option<Opening> {
-    let mut best: Option<(f64, &Segment)> = None;
-    for piece in pieces.filter(|piece| piece.length() > SHORTEST) {
-        let distance = piece.distance(door.at);
-        let is_parallel =
-            door.along.is_none_or(|along| cross(along, piece.b - piece.a).abs() <= SLANT * piece.length());
-        let is_better = |(least, other): (f64, &Segment)| {
-            distance < least - SHORTEST || distance < least + SHORTEST && piece.length() > other.length()
-        };
-        if is_parallel && distance <= REACH && best.is_none_or(is_better) {
-            best = Some((distance, piece));
-        }
-    }
-    let (_, piece) = best?;
-    let along = (piece.b - piece.a) / piece.length();
-    let at = piece.a + along * (door.at - piece.a).dot(&along);
-    Some(Opening { at, along, low: 0.0, high: 0.0 })
-}
-
-/// How far the wall of an opening goes on without a gap and without another wall that meets it.
-fn run<'p>(opening: &Opening, pieces: impl Iterator<Item = &'p Segment> + Clone) -> (f64, f64) {
-    let sorted = |(a, b): (f64, f64)| if a < b { (a, b) } else { (b, a) };
-    let mut stretches: Vec<_> =
-        pieces.clone().filter_map(|piece| opening.stretch(piece, ONE_LINE)).map(sorted).collect();
-    stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut runs: Vec<(f64, f64)> = Vec::new();
-    for (low, high) in stretches {
-        match runs.last_mut() {
-            Some((_, end)) if low <= *end + ONE_LINE => *end = if high > *end { high } else { *end },
-            _ => runs.push((low, high)),
-        }
-    }
-    let distance = |(low, high): &(f64, f64)| if *low > 0.0 { *low } else { (-high).max(0.0) };
-    let nearest = runs.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let (mut low, mut high) = nearest.unwrap_or((0.0, 0.0));
-    for t in pieces.filter_map(|piece| opening.meeting(piece)) {
-        if t < -ONE_LINE && t > low {
-            low = t;
-        } else if t > ONE_LINE && t < high {
-            high = t;
-        }
-    }
-    (low, high)
+/// The line of the wall that is nearest to a door, through its point nearest to the door, as far as it goes on without a
+/// gap and without another wall that meets it.
+fn line<'p>(door: &Door, pieces: impl Iterator<Item = &'p Segment> + Clone) -> Option<Opening> {
+    let is_parallel = |piece: &&Segment| {
+        door.along.is_none_or(|along| cross(along, piece.b - piece.a).abs() <= SLANT * piece.length())
+    };
+    let mut near: Vec<(f64, &Segment)> = pieces
+        .clone()
+        .filter(|piece| piece.length() > SHORTEST)
+        .filter(is_parallel)
+        .map(|piece| (piece.distance(door.at), piece))
+        .filter(|(distance, _)| *distance <= REACH)
+        .collect();
+    let least = near.iter().map(|(distance, _)| *distance).fold(REACH, f64::min);
+    near.retain(|(distance, _)| *distance < least + ONE_LINE);
+    near.sort_by(|a, b| a.1.length().total_cmp(&b.1.length()));
+    let longest = &near[near.len().saturating_sub(MOST_WALLS)..];
+    let openings = longest.iter().map(|(_, piece)| {
+        let along = (piece.b - piece.a) / piece.length();
+        let at = piece.a + along * (door.at - piece.a).dot(&along);
+        let mut opening = Opening { at, along, low: 0.0, high: 0.0 };
+        (opening.run(pieces.clone()), opening)
+    });
+    openings.max_by_key(|(ends_here, _)| *ends_here).map(|(_, opening)| opening)
 }
 
 /// What openings leave of a piece.

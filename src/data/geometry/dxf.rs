@@ -8,6 +8,7 @@ use super::drawing::Drawing;
 use super::feature::{self, Feature, FilePlace, Geometry, GeometryError, PropertyValue, Select};
 use crate::base::geometry::Vec2;
 use crate::base::math::{atan2, sin_cos};
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Largest distance between an arc and its chords, m.
@@ -30,6 +31,10 @@ const UNITS: [(i64, f64); 13] = [
     (15, 10.0),
     (21, 1200.0 / 3937.0),
 ];
+/// The flag of a layer that is frozen.
+const FROZEN: i64 = 1;
+/// Largest angle, in degrees: writers go around a few times at most.
+const LARGEST_ANGLE: f64 = 3600.0;
 /// Entities that may belong to a plan and are not read.
 const SKIPPED: [&str; 8] = ["INSERT", "ELLIPSE", "SPLINE", "MLINE", "3DFACE", "SOLID", "REGION", "TRACE"];
 
@@ -59,7 +64,7 @@ pub fn read_dxf(
 ) -> Result<Drawing, Vec<GeometryError>> {
     let pairs = pairs(text).map_err(|error| vec![error])?;
     let mut drawing = Drawing { unit, ..Drawing::default() };
-    let (mut section, mut errors) = ("", Vec::new());
+    let (mut section, mut errors, mut hidden) = ("", Vec::new(), BTreeSet::new());
     let mut records = records(&pairs).into_iter().peekable();
     while let Some(record) = records.next() {
         match (section, record.kind) {
@@ -70,7 +75,11 @@ pub fn read_dxf(
                 }
             }
             (_, "ENDSEC") => section = "",
-            ("TABLES", "LAYER") => drawing.layers.extend(record.text(2).map(str::to_owned)),
+            ("TABLES", "LAYER") => {
+                let is_off = record.text(62).is_some_and(|color| color.starts_with('-'));
+                hidden.extend(record.text(2).filter(|_| is_off || record.flag(FROZEN)));
+                drawing.layers.extend(record.text(2).map(str::to_owned));
+            }
             ("ENTITIES", kind) => {
                 let mut vertices = Vec::new();
                 while let Some(vertex) = records.next_if(|next| kind == "POLYLINE" && next.kind == "VERTEX") {
@@ -87,8 +96,11 @@ pub fn read_dxf(
                 if is_paper || !(is_read || SKIPPED.contains(&kind)) || !select(layer, &properties) {
                     continue;
                 }
-                if !is_read {
-                    *drawing.skipped.entry(kind.to_owned()).or_default() += 1;
+                let is_hidden = hidden.contains(layer) || record.text(60) == Some("1");
+                if !is_read || is_hidden {
+                    let of = if is_hidden { format!(" hidden on `{layer}`") } else { String::new() };
+                    let skipped = format!("{kind}{of}");
+                    *drawing.skipped.entry(skipped).or_default() += 1;
                     continue;
                 }
                 let place = FilePlace { line: Some(record.line), ..FilePlace::default() };
@@ -219,7 +231,10 @@ impl<'t> Record<'_, 't> {
                     feature::point(centre)?;
                     return Ok(Some(Geometry::Circle { centre: seen(centre), radius }));
                 }
-                let turn = |code, what| Ok::<f64, String>(self.number(code, what)? / 180.0 * PI);
+                let turn = |code, what| match self.number(code, what)? {
+                    angle if angle.abs() <= LARGEST_ANGLE => Ok(angle / 180.0 * PI),
+                    angle => Err(format!("has {angle:e} degrees as its {what}, at most {LARGEST_ANGLE}")),
+                };
                 let (start, end) = (turn(50, "start angle")?, turn(51, "end angle")?);
                 let sweep = (end - start).rem_euclid(TAU);
                 arc(centre, radius, start, if sweep == 0.0 { TAU } else { sweep }, unit)

@@ -2,6 +2,7 @@
 
 use super::ring;
 use crate::base::geometry::{Polygon, Vec2};
+use std::fmt;
 
 /// Largest coordinate that a file may hold, in its own unit: millimetres of a country, and more.
 const LARGEST: f64 = 1e12;
@@ -56,7 +57,7 @@ impl FilePlace {
 pub type Select<'s> = dyn FnMut(&str, &[(String, PropertyValue)]) -> bool + 's;
 
 /// The value of a property.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, PartialOrd)]
 pub enum PropertyValue {
     /// A text.
     Text(String),
@@ -68,6 +69,18 @@ pub enum PropertyValue {
     Null,
     /// A list or an object, as JSON text.
     Other(String),
+}
+
+impl fmt::Display for PropertyValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(text) => write!(f, "\"{text}\""),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Bool(truth) => write!(f, "{truth}"),
+            Self::Null => f.write_str("null"),
+            Self::Other(text) => f.write_str(text),
+        }
+    }
 }
 
 /// A shape of one part.

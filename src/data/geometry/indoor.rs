@@ -45,15 +45,23 @@ pub fn role(feature: &Feature, walkable: bool) -> Role {
             _ => Role::Nothing,
         };
     }
-    let is_set = |name: &str| feature.property(name).is_some_and(|value| *value != PropertyValue::Null);
     match feature.text("indoor") {
         Some("door") => Role::Door,
-        _ if !is_polygon && (is_set("door") || is_set("entrance")) => Role::Door,
+        _ if !is_polygon && may_be_door(&feature.properties) => Role::Door,
         Some("room" | "level") => area(Role::Room),
         Some("corridor" | "area") => area(Role::Hall),
         Some("wall" | "column") => area(Role::Obstacle),
         _ => plain,
     }
+}
+
+/// Whether a point or a line with these tags of OSM is a door.
+pub fn may_be_door(properties: &[(String, PropertyValue)]) -> bool {
+    properties.iter().any(|(name, value)| match name.as_str() {
+        "door" | "entrance" => *value != PropertyValue::Null,
+        "indoor" => *value == PropertyValue::Text("door".into()),
+        _ => false,
+    })
 }
 
 /// The width of a door at a point, in metres; a number in the file is in its unit.

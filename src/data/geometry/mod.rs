@@ -24,5 +24,5 @@ pub use feature::{Feature, FilePlace, Geometry, GeometryError, PropertyValue, Se
 pub use geojson::{read_geojson, select_geojson};
 pub use placement::{Fault, Placement};
 pub use plan::{Form, Plan, plan};
-pub use snap::{Slips, slips, snap};
+pub use snap::{Slips, is_crowded, slips, snap};
 pub use wkt::read_wkt;

@@ -20,6 +20,8 @@ const DEGREES: f64 = 0.05;
 const WIDEST_DOOR: f64 = 50.0;
 /// Farther from the origin, coordinates are those of a map, m.
 const FARTHEST: f64 = 1e5;
+/// A drawing that is wider is not in degrees.
+const WIDEST_DEGREES: f64 = 1.0;
 /// Origins are suggested in whole multiples of this, m.
 const ROUND: f64 = 10.0;
 /// Units that drawings are made in, with metres per unit.
@@ -48,6 +50,8 @@ pub enum Fault {
     Degrees,
     /// A coordinate is no longitude or latitude.
     NoDegrees(Vec2),
+    /// The latitude comes first.
+    Swapped,
     /// The drawing is too large or too small for a building.
     Extent {
         /// The longer side of the rectangle around it, m.
@@ -112,10 +116,19 @@ impl Placement {
             }
             Self::Local(middle) => {
                 let is_degrees = |p: Vec2| p.x.abs() <= 180.0 && p.y.abs() < 90.0;
+                let scale = metres_per_degree(middle.y);
+                let centre = 0.5 * (before.low + before.high);
+                let far = |p: Vec2| (p - middle).component_mul(&scale).norm();
+                let is_swapped = match is_degrees(centre) {
+                    true => far(centre.yx()) < FARTHEST && far(centre) > FARTHEST,
+                    false => is_degrees(centre.yx()) && reach(&before) < WIDEST_DEGREES,
+                };
+                if is_swapped {
+                    return Err(Fault::Swapped);
+                }
                 if let Some(wrong) = [before.low, before.high, middle].into_iter().find(|p| !is_degrees(*p)) {
                     return Err(Fault::NoDegrees(wrong));
                 }
-                let scale = metres_per_degree(middle.y);
                 for feature in features.iter_mut() {
                     feature.shape.map(|p| (p - middle).component_mul(&scale), 1.0);
                 }

@@ -32,11 +32,15 @@ pub struct Plan {
 }
 
 /// The barriers and doors of features. `unit`: metres per unit of their widths; `walkable`: polygons are where agents
-/// move.
+/// move; halls nearer than `touching` are one.
 ///
 /// # Errors
 /// Doors that are no points or lines, or whose width is no length.
-pub fn plan(features: &[Feature], unit: f64, walkable: bool) -> Result<Plan, Vec<GeometryError>> {
+pub fn plan(
+    features: &[Feature],
+    (unit, touching): (f64, f64),
+    walkable: bool,
+) -> Result<Plan, Vec<GeometryError>> {
     let roles: Vec<Role> = features.iter().map(|feature| role(feature, walkable)).collect();
     let halls: Vec<(usize, Bounds, &Polygon)> = features
         .iter()
@@ -67,7 +71,7 @@ pub fn plan(features: &[Feature], unit: f64, walkable: bool) -> Result<Plan, Vec
                 Form::Solid(Shape::Circle { centre: *centre, radius: *radius })
             }
             (Geometry::Polygon(polygon), Role::Room) => Form::Wall(polygon.segments().collect()),
-            (Geometry::Polygon(polygon), Role::Hall) => Form::Wall(rim(k, polygon, &halls)),
+            (Geometry::Polygon(polygon), Role::Hall) => Form::Wall(rim(k, polygon, &halls, touching)),
             (Geometry::Polygon(polygon), _) => Form::Solid(Shape::Polygon(polygon.clone())),
         };
         found.has_spaces |= matches!(roles[k], Role::Room | Role::Hall);
@@ -79,26 +83,30 @@ pub fn plan(features: &[Feature], unit: f64, walkable: bool) -> Result<Plan, Vec
 }
 
 fn door(feature: &Feature, unit: f64) -> Result<Door, String> {
-    let place = feature.place.clone();
+    let (place, has_level) = (feature.place.clone(), feature.property("level").is_some());
     match &feature.shape {
-        Geometry::Point(at) => Ok(Door { place, at: *at, along: None, width: width(feature, unit)? }),
+        Geometry::Point(at) => {
+            Ok(Door { place, at: *at, along: None, width: width(feature, unit)?, has_level })
+        }
         Geometry::Line(points) => {
             let (first, last) = (points[0], points[points.len() - 1]);
             let (along, width) = (last - first, (last - first).norm());
             if width == 0.0 {
                 return Err("the line of a door must not end where it begins".into());
             }
-            Ok(Door { place, at: 0.5 * (first + last), along: Some(along / width), width })
+            Ok(Door { place, at: 0.5 * (first + last), along: Some(along / width), width, has_level })
         }
         Geometry::Polygon(_) | Geometry::Circle { .. } => Err("a door must be a point or a line".into()),
     }
 }
 
 /// The parts of the rim of a hall that no other hall lies beyond.
-fn rim(own: usize, polygon: &Polygon, halls: &[(usize, Bounds, &Polygon)]) -> Vec<Segment> {
+fn rim(own: usize, polygon: &Polygon, halls: &[(usize, Bounds, &Polygon)], touching: f64) -> Vec<Segment> {
     let mut found = Vec::new();
     for edge in polygon.segments() {
-        let reach = Vec2::repeat(2.0 * TOUCHING);
+        // Just outside, and as far as another hall may lie.
+        let outside = [2.0 * TOUCHING, touching];
+        let reach = Vec2::repeat(outside[0].max(outside[1]));
         let (low, high) = (edge.a.inf(&edge.b) - reach, edge.a.sup(&edge.b) + reach);
         let near: Vec<&Polygon> = halls
             .iter()
@@ -116,19 +124,20 @@ fn rim(own: usize, polygon: &Polygon, halls: &[(usize, Bounds, &Polygon)]) -> Ve
             continue;
         }
         let along = edge.b - edge.a;
-        let aside = Vec2::new(-along.y, along.x) * (2.0 * TOUCHING / edge.length());
+        let aside = Vec2::new(-along.y, along.x) / edge.length();
         let mut cuts = vec![0.0, 1.0];
         for other in near.iter().flat_map(|other| other.segments()) {
-            cuts.extend(meetings(&edge, &other));
+            cuts.extend(meetings(&edge, &other, touching));
         }
         cuts.sort_by(f64::total_cmp);
         // Parts that follow one another stay one piece.
         let mut start = None;
         for pair in cuts.windows(2) {
             let middle = edge.a + along * (0.5 * (pair[0] + pair[1]));
-            let outside = if polygon.contains(middle + aside) { middle - aside } else { middle + aside };
+            let is_left = polygon.contains(middle + aside * outside[0]);
+            let away = if is_left { -aside } else { aside };
             let is_open = (pair[1] - pair[0]) * edge.length() > TOUCHING
-                && near.iter().any(|other| other.contains(outside));
+                && near.iter().any(|other| outside.iter().any(|far| other.contains(middle + away * *far)));
             if !is_open {
                 start.get_or_insert(pair[0]);
             }
@@ -146,12 +155,12 @@ fn rim(own: usize, polygon: &Polygon, halls: &[(usize, Bounds, &Polygon)]) -> Ve
 }
 
 /// Where another edge crosses an edge or ends on it, as shares of its length.
-fn meetings(edge: &Segment, other: &Segment) -> impl Iterator<Item = f64> {
+fn meetings(edge: &Segment, other: &Segment, touching: f64) -> impl Iterator<Item = f64> {
     let (along, across) = (edge.b - edge.a, other.b - other.a);
     let turn = cross(along, across);
     let crossing = (turn != 0.0 && edge.meets(other)).then(|| cross(other.a - edge.a, across) / turn);
     let ends = [other.a, other.b].map(|end| {
-        (edge.distance(end) <= TOUCHING).then(|| (end - edge.a).dot(&along) / along.norm_squared())
+        (edge.distance(end) <= touching).then(|| (end - edge.a).dot(&along) / along.norm_squared())
     });
     ends.into_iter().chain([crossing]).flatten().filter(|share| *share > 0.0 && *share < 1.0)
 }

@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 const JOINED: f64 = 1e-3;
 /// What is left between an end and the piece that it was moved onto, m.
 const ROUNDING: f64 = 1e-9;
+/// Most pairs of pieces that are looked at.
+const MOST_PAIRS: usize = 2_000_000;
 /// How often ends are moved onto pieces, which may move themselves.
 const ROUNDS: usize = 4;
 
@@ -26,6 +28,8 @@ pub struct Slips {
     pub doubled: usize,
     /// One of these places.
     pub place: Vec2,
+    /// The widest gap at such an end, m, and that end.
+    pub widest: (f64, Vec2),
 }
 
 /// The walls with ends nearer than `tolerance` to each other joined, ends that near to another piece moved onto it, and
@@ -45,6 +49,16 @@ pub fn snap(walls: &[Vec<Segment>], edges: &[Segment], tolerance: f64) -> Vec<Ve
         walls[wall].push(piece);
     }
     walls
+}
+
+/// Whether more pairs of pieces meet or nearly meet than can be looked at, as where thousands of lines meet in one point.
+pub fn is_crowded(walls: &[Vec<Segment>], edges: &[Segment], tolerance: f64) -> bool {
+    let (segments, mut count) = (all(&listed(walls), edges), 0);
+    let mut is_too_many = |_, _| {
+        count += 1;
+        count > MOST_PAIRS
+    };
+    segments.len().pow(2) > 2 * MOST_PAIRS && any_near_pair(&segments, tolerance, &mut is_too_many)
 }
 
 /// Where walls nearly meet, if they do anywhere.
@@ -86,15 +100,16 @@ pub fn slips(walls: &[Vec<Segment>], edges: &[Segment], tolerance: f64) -> Optio
         doubled[own] |= !is_own && is_apart && is_lesser && along(&piece, &found, tolerance).is_some();
     }
     // The ends of a piece that lies beside another one are near that one, too.
-    let loose: Vec<Vec2> = (0..count)
+    let loose: Vec<(f64, Vec2)> = (0..count)
         .filter(|k| !doubled[*k])
         .flat_map(|k| [(segments[k].a, nearest[k][0]), (segments[k].b, nearest[k][1])])
         .filter(|(p, distance)| is_loose(*p) && (JOINED..=tolerance).contains(distance))
-        .map(|(p, _)| p)
+        .map(|(p, distance)| (distance, p))
         .collect();
     let twice: Vec<Vec2> = (0..count).filter(|k| doubled[*k]).map(|k| middle(&pieces[k].1)).collect();
-    let place = *loose.first().or(twice.first())?;
-    Some(Slips { ends: loose.len(), doubled: twice.len(), place })
+    let place = loose.first().map(|(_, p)| *p).or(twice.first().copied())?;
+    let widest = loose.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, place));
+    Some(Slips { ends: loose.len(), doubled: twice.len(), place, widest })
 }
 
 fn listed(walls: &[Vec<Segment>]) -> Vec<Piece> {
@@ -119,13 +134,24 @@ fn all(pieces: &[Piece], edges: &[Segment]) -> Vec<Segment> {
     pieces.iter().map(|(_, piece)| *piece).chain(edges.iter().copied()).collect()
 }
 
-/// Each of the first `count` segments, by their numbers, with all others that may be within reach.
-fn near_pairs(segments: &[Segment], count: usize, reach: f64) -> Vec<(usize, usize)> {
+/// Whether something is true of two segments within reach of each other.
+fn any_near_pair(segments: &[Segment], reach: f64, is_true: &mut dyn FnMut(usize, usize) -> bool) -> bool {
     let more = Vec2::repeat(0.5 * reach + JOINED);
     let wider = |s: &Segment| Segment::new(s.a.inf(&s.b) - more, s.a.sup(&s.b) + more);
     let boxes: Vec<Segment> = segments.iter().map(wider).collect();
+    let has_near_end =
+        |a: &Segment, b: &Segment| a.distance(b.a) <= reach + JOINED || a.distance(b.b) <= reach + JOINED;
+    let pair = sweep(&boxes, |i, j| {
+        let (a, b) = (&segments[i], &segments[j]);
+        (has_near_end(a, b) || has_near_end(b, a) || a.meets(b)) && is_true(i, j)
+    });
+    pair.is_some()
+}
+
+/// Each of the first `count` segments, by their numbers, with all others within reach.
+fn near_pairs(segments: &[Segment], count: usize, reach: f64) -> Vec<(usize, usize)> {
     let mut pairs: Vec<(usize, usize)> = Vec::new();
-    sweep(&boxes, |i, j| {
+    any_near_pair(segments, reach, &mut |i, j| {
         pairs.extend([(i, j), (j, i)]);
         false
     });
