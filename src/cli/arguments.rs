@@ -11,7 +11,7 @@ use super::simulate::choice::Keep;
 use super::simulate::destination::left_out;
 use super::terminal::ColorChoice;
 use super::values::{
-    Model, TextFormat, parse_count, parse_duration, parse_moment, parse_quiet, parse_share, parse_velocity,
+    Limit, Model, TextFormat, parse_count, parse_moment, parse_quiet, parse_share, parse_velocity,
 };
 use super::walk::WalkCommand;
 use crate::data::table::{FORMATS, TraceFormat};
@@ -144,10 +144,9 @@ pub(super) struct Check {
     /// What is asked.
     #[command(flatten)]
     pub(super) questions: Questions,
-    /// Time limit of the whole call, such as `50ms`, `2s`, `5min`; none by default. The search for witnesses may
-    /// exceed it by 25 %, at least 20 ms and at most a second.
-    #[arg(long, value_parser = parse_duration)]
-    pub(super) timeout: Option<std::time::Duration>,
+    /// The time that it may take.
+    #[command(flatten)]
+    pub(super) limit: Limit,
     /// Only forecast the number of trials and the time of each query; runs the first few trials.
     #[arg(long, conflicts_with_all = ["timeout", "report", "launch"])]
     pub(super) forecast: bool,
@@ -204,6 +203,9 @@ pub(super) struct Simulate {
     /// The model.
     #[command(flatten)]
     pub(super) model: Model,
+    /// The time that the call may take.
+    #[command(flatten)]
+    pub(super) limit: Limit,
     /// Property files (`.bltl`) for `--keep`.
     #[arg(requires = "keep")]
     pub(super) properties: Vec<String>,
@@ -327,6 +329,9 @@ pub(super) struct Show {
     /// The model.
     #[command(flatten)]
     pub(super) model: Model,
+    /// The time that the call may take.
+    #[command(flatten)]
+    pub(super) limit: Limit,
     /// Property files (`.bltl`).
     pub(super) properties: Vec<String>,
     /// `text` describes the scenario, `svg` draws its plan with the shortest ways.

@@ -37,7 +37,7 @@ pub(super) enum Way<'a> {
 /// Runs the command.
 pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit {
     let (timeout, is_forecast, launch) = match way {
-        Way::Check(check) => (check.timeout, check.forecast, check.launch.as_deref()),
+        Way::Check(check) => (check.limit.timeout, check.forecast, check.launch.as_deref()),
         Way::Merge(_) => (None, false, None),
     };
     let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), timeout);
@@ -310,7 +310,7 @@ fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clon
         let mut run = run.clone();
         let error = match ended {
             Ended::Late => {
-                let error = complaint::late();
+                let error = complaint::late(" before the first trial");
                 run.diagnostics = inputs::findings(std::slice::from_ref(&error), &[]);
                 run.failure = Some(Failure::Late(error.title.clone()));
                 error

@@ -39,9 +39,9 @@ pub(super) fn input(title: impl Into<String>) -> Diagnostic {
         .hint("file names are relative to the current folder; `-` is standard input")
 }
 
-/// The time limit ended the call before the first trial.
-pub(super) fn late() -> Diagnostic {
-    Diagnostic::placeless(Code::E0921, "the time limit ended the call before the first trial")
+/// The time limit ended the call; `when` begins with a blank.
+pub(super) fn late(when: &str) -> Diagnostic {
+    Diagnostic::placeless(Code::E0921, format!("the time limit ended the call{when}"))
         .hint("write a longer `--timeout`, or make the scenario smaller")
 }
 

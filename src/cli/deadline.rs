@@ -1,6 +1,10 @@
 //! Time and signals of a call while it does not sample: while it compiles, prepares scenes and stopping rules, and prints.
 //! The engine keeps both while it samples. Before that there is no result to lose, so the process simply ends.
 
+use super::complaint;
+use super::output;
+use super::terminal::Colors;
+use super::values::Limit;
 use crate::engine::Budget;
 use crate::report::ExitCode as Exit;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -27,6 +31,17 @@ pub(super) enum Ended {
     Late,
     /// By a signal.
     Interrupted,
+}
+
+/// Ends a call without results when its time is up.
+pub(super) fn limit(limit: Limit, colors: Colors) {
+    let Some(time) = limit.timeout else { return };
+    let _ = std::thread::Builder::new().spawn(move || {
+        std::thread::sleep(time);
+        complaint::tell(&complaint::late(""), &[], colors);
+        output::leave_nothing();
+        std::process::exit(i32::from(Exit::Undecided.code()));
+    });
 }
 
 /// The phase of a call, for the threads that can end it. The thread that holds the lock while the call prepares ends it.

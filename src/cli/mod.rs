@@ -134,6 +134,14 @@ fn format_of(words: &[String]) -> Option<&str> {
 fn dispatch(arguments: &Arguments) -> Exit {
     let colors = Colors::chosen(arguments.color);
     let ended = |done: Result<(), Diagnostic>| complaint::end(done.map(|()| Exit::Success), &[], colors);
+    let limit = match &arguments.command {
+        Command::Simulate(command) => Some(command.limit),
+        Command::Path(command) => Some(command.limit),
+        Command::Walk(command) => Some(command.limit),
+        Command::Show(command) => Some(command.limit),
+        _ => None,
+    };
+    limit.into_iter().for_each(|limit| deadline::limit(limit, colors));
     match &arguments.command {
         Command::Check(command) => check::run(&command.questions, &Way::Check(command), colors),
         Command::Merge(command) => check::run(&command.questions, &Way::Merge(&command.folder), colors),

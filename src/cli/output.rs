@@ -8,6 +8,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Most symbolic links that are followed one after the other, as in Linux.
 const MOST_LINKS: usize = 40;
@@ -66,6 +67,9 @@ fn replace<T>(
     Ok(result)
 }
 
+/// Names of the files beside, for a call that its time ends.
+static BEGUN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
 /// A new file in the directory of another one. It is deleted unless it was renamed.
 struct Beside(PathBuf);
 
@@ -76,12 +80,21 @@ impl Beside {
             let name = format!(".smc-{}-{number}.tmp", std::process::id());
             let path = place.with_file_name(name);
             match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok((Self(path), file)),
+                Ok(file) => {
+                    BEGUN.lock().unwrap_or_else(PoisonError::into_inner).push(path.clone());
+                    return Ok((Self(path), file));
+                }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists && number < MOST_NAMES => number += 1,
                 Err(error) => return Err(error),
             }
         }
     }
+}
+
+/// Deletes the files that this process has begun to write.
+pub(super) fn leave_nothing() {
+    let begun = BEGUN.lock().unwrap_or_else(PoisonError::into_inner);
+    begun.iter().for_each(|path| _ = std::fs::remove_file(path));
 }
 
 impl Drop for Beside {

@@ -33,6 +33,15 @@ pub(super) struct Model {
     pub(super) velocity: Option<Velocity>,
 }
 
+/// How long a call may take.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct Limit {
+    /// Time limit of the whole call, such as `50ms`, `2s`, `5min`; none by default. The search for witnesses of a check may
+    /// exceed it by 25 %, at least 20 ms and at most a second.
+    #[arg(long, value_parser = parse_duration)]
+    pub(super) timeout: Option<std::time::Duration>,
+}
+
 /// Threads, so many or one for each core.
 pub(super) fn threads(number: Option<usize>) -> Result<Threads, Diagnostic> {
     Threads::new(number).map_err(|error| library::refusal(&Fault::Threads(error.to_string())))
@@ -62,6 +71,12 @@ pub(super) fn parse_count(text: &str) -> Result<u64, String> {
     let exact = text.parse().ok();
     let rounded = || text.parse().ok().filter(|n: &f64| *n >= 0.0 && *n <= 9e15 && n.fract() == 0.0);
     exact.or_else(|| rounded().map(|n| n as u64)).ok_or_else(wrong)
+}
+
+/// A whole number within limits.
+pub(super) fn parse_within(text: &str, low: u32, high: u32) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|number| (low..=high).contains(number));
+    number.ok_or_else(|| format!("write a whole number from {low} to {high}"))
 }
 
 /// A number of seconds, or a time with its unit.

@@ -39,6 +39,35 @@ fn time_ends_a_call_that_is_still_preparing() {
 }
 
 #[test]
+fn time_ends_calls_without_results_and_leaves_no_file() {
+    let place = slow();
+    place.write("b.scn", SMALL.as_bytes());
+    for words in [
+        &["show", "a.scn"][..],
+        &["path", "a.scn"],
+        &["walk", "a.scn"],
+        &["simulate", "b.scn", "-n", "1000000000", "-o", "b.csv"],
+    ] {
+        let said = place.call(&[words, &["--timeout", "200ms"]].concat());
+        assert_eq!(said.code, Some(3), "{words:?}: {}", said.err);
+        assert!(said.err.starts_with("error[E0921]: the time limit ended the call\n"), "{}", said.err);
+        assert_eq!(std::fs::read_dir(place.path(".")).unwrap().count(), 4, "{words:?}");
+    }
+}
+
+#[test]
+fn a_picture_of_a_million_agents_is_refused() {
+    let crowd = "scene { region hall: rect (0, 0) .. (900, 900) }\nagents crowd[200000]: adult { at = uniform in hall }\n";
+    let place = Place::new(&[(
+        "a.scn",
+        &format!("horizon = 1 s step = 0.02 s\nkind adult: sfm preset smc1\n{crowd}"),
+    )]);
+    let said = place.call(&["show", "a.scn", "--format", "svg"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("a picture shows at most 100000 agents (got 200000)"), "{}", said.err);
+}
+
+#[test]
 fn a_signal_ends_a_call_that_is_still_preparing() {
     let place = slow();
     let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json"];

@@ -97,6 +97,34 @@ fn way_points_are_rounded() {
 }
 
 #[test]
+fn way_points_that_are_no_path_are_refused() {
+    for (points, wanted) in [
+        ("1,2\n", "needs two different points"),
+        ("", "needs two different points"),
+        ("1,2\n1,2\n1,2\n", "needs two different points"),
+        ("0,0\n2e6,0\n", "line 3: a coordinate must lie between -1e6 m and 1e6 m (got 2e6 m)"),
+    ] {
+        let place = Place::new(&[("points.csv", &format!("x,y\n{points}"))]);
+        let said = place.call(&["path", "--waypoints", "points.csv"]);
+        assert!(said.code == Some(2) && said.err.contains(wanted), "{points}: {}", said.err);
+    }
+}
+
+#[test]
+fn numbers_and_tables_without_bounds_are_refused() {
+    for (words, wanted) in [
+        (&["--shape", "L5", "--pieces", "1"][..], "write a whole number from 2 to 64"),
+        (&["--shape", "L5", "--pieces", "0"], "write a whole number from 2 to 64"),
+        (&["--shape", "L5", "--pieces", "65"], "write a whole number from 2 to 64"),
+        (&["--shape", "L5", "--profiles", "1000000000"], "write a whole number from 0 to 10000"),
+        (&["--shape", "L1e6", "--format", "csv", "--dt", "1ms"], "rows, more than 1000000"),
+    ] {
+        let said = Place::new(&[]).call(&[&["path"], words].concat());
+        assert!(said.code == Some(2) && said.err.contains(wanted), "{words:?}: {}", said.err);
+    }
+}
+
+#[test]
 fn wrong_calls_are_refused_with_a_hint() {
     let shaped: [(&[&str], &str); 6] = [
         (&[], "takes a scenario, `--shape` or `--waypoints`"),

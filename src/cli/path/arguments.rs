@@ -1,6 +1,6 @@
 //! The options of `smc path`.
 
-use crate::cli::values::parse_moment;
+use crate::cli::values::{Limit, parse_moment, parse_within};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -9,6 +9,9 @@ use std::path::PathBuf;
 pub(in crate::cli) struct PathCommand {
     /// Scenario file (`.scn`); without one, `--shape` or `--waypoints` gives the path.
     pub(in crate::cli) scenario: Option<String>,
+    /// The time that the call may take.
+    #[command(flatten)]
+    pub(in crate::cli) limit: Limit,
     /// Set a parameter: `width=2`.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(in crate::cli) set: Vec<String>,
@@ -63,11 +66,11 @@ pub(in crate::cli) struct PathCommand {
     /// Speed at its end.
     #[arg(long, default_value = "0m/s", value_name = "SPEED", value_parser = parse_speed)]
     pub(in crate::cli) end_speed: f64,
-    /// In how many pieces the acceleration of a drawn profile is constant.
-    #[arg(long, default_value_t = 8, value_name = "N")]
-    pub(in crate::cli) pieces: usize,
-    /// Number of profiles that are drawn along a shape.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    /// In how many pieces, 2 to 64, the acceleration of a drawn profile is constant.
+    #[arg(long, default_value_t = 8, value_name = "N", value_parser = |text: &str| parse_within(text, 2, 64))]
+    pub(in crate::cli) pieces: u32,
+    /// Number of profiles that are drawn along a shape, at most 10000.
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = |text: &str| parse_within(text, 0, 10_000))]
     pub(in crate::cli) profiles: u32,
     /// How they are drawn.
     #[arg(long, value_enum, default_value_t = SpeedLaw::Varied)]

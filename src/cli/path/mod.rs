@@ -27,6 +27,9 @@ use arguments::{Figure, PathFormat};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+/// Most rows of a table.
+const MOST_ROWS: f64 = 1e6;
+
 /// Runs the command.
 pub(super) fn run(arguments: &PathCommand, colors: Colors) -> Exit {
     complaint::end(write(arguments, colors), &[], colors)
@@ -114,7 +117,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
     let title = &scenario.title;
     match (arguments.format, arguments.figure) {
         (PathFormat::Json, _) => Ok(paths::to_json(&found)),
-        (PathFormat::Csv, _) => Ok(paths::to_csv(&found, arguments.dt)),
+        (PathFormat::Csv, _) => Ok(table(&found, arguments.dt)?),
         (PathFormat::Text, _) => Ok(told(&found)),
         (PathFormat::Svg, Figure::Map) => Ok(paths::map(&scenario, &found, &arguments.at)),
         (PathFormat::Svg, figure) => {
@@ -131,6 +134,16 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
                 .ok_or_else(nothing)
         }
     }
+}
+
+/// The table of paths, whose length is bounded because it is kept in memory.
+fn table(found: &[PlannedPath], dt: f64) -> Result<String, Diagnostic> {
+    let rows = found.iter().map(|path| path.course.duration() / dt).sum::<f64>().ceil();
+    if rows > MOST_ROWS {
+        let title = format!("the table would have {rows} rows, more than {MOST_ROWS}");
+        return Err(complaint::argument(title, "write a longer `--dt`, or fewer `--profiles`"));
+    }
+    Ok(paths::to_csv(found, dt))
 }
 
 /// The paths that walkers can be advised to take; none is followed where they have one alone.

@@ -1,7 +1,7 @@
 //! Paths that are given by their shape or by way points: the fastest profile, and drawn ones.
 
 use super::arguments::{Figure, PathCommand, PathFormat, SpeedLaw};
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Vec2, coordinate_fault};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::cli::complaint::argument;
 use crate::cli::inputs;
@@ -83,7 +83,7 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
             Ok(if format == PathFormat::Json {
                 paths::to_json(&found)
             } else {
-                paths::to_csv(&found, arguments.dt)
+                super::table(&found, arguments.dt)?
             })
         }
     }
@@ -105,7 +105,7 @@ fn profile(
         SpeedLaw::Uniform => Law::Uniform,
         SpeedLaw::Varied => Law::Preferred { speed: 0.85 * limits.speed, spread: 0.15 },
     };
-    let variety = Variety { pieces: arguments.pieces, floor: FLOOR, law };
+    let variety = Variety { pieces: arguments.pieces as usize, floor: FLOOR, law };
     let stream = stream(arguments);
     let draw = |knot: u32| stream.uniform_pair(number * DRAWS + knot % DRAWS);
     let found = varied(stretches, limits, arguments.start_speed, arguments.end_speed, &variety, draw)?;
@@ -175,7 +175,13 @@ fn way_points(file: &std::path::Path) -> Result<Vec<Vec2>, Diagnostic> {
         let Some(point) = point else {
             return Err(wrong(format!("`{name}`: line {} has no numbers in `x` and `y`", k + 2)));
         };
+        if let Some(fault) = coordinate_fault(point) {
+            return Err(wrong(format!("`{name}`: line {}: {fault}", k + 2)));
+        }
         points.push(point);
+    }
+    if points.iter().all(|point| *point == points[0]) {
+        return Err(wrong(format!("`{name}` needs two different points")));
     }
     Ok(points)
 }

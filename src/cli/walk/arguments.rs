@@ -1,6 +1,6 @@
 //! The options of `smc walk`.
 
-use crate::cli::values::Model;
+use crate::cli::values::{Limit, Model};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -10,6 +10,9 @@ pub(in crate::cli) struct WalkCommand {
     /// The model.
     #[command(flatten)]
     pub(in crate::cli) model: Model,
+    /// The time that the call may take.
+    #[command(flatten)]
+    pub(in crate::cli) limit: Limit,
     /// Only this agent: `worker`, `people[1]`; all agents with a route by default. May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) agent: Vec<String>,
