@@ -116,7 +116,7 @@ fn between(sets: [&[&Walk]; 2], is_paired: bool, seed: u64) -> Comparison {
     let pairs = if is_paired { pairs(sets) } else { Vec::new() };
     let measure = |of: fn(&Walk) -> f64, procedure| {
         let values = sets.map(|set| set.iter().map(|walk| of(walk)).collect::<Vec<f64>>());
-        let differences: Vec<f64> = pairs.iter().map(|[one, other]| of(other) - of(one)).collect();
+        let differences: Vec<f64> = pairs.iter().map(|[one, other]| rounded(of(other) - of(one))).collect();
         let [first, second] = &values;
         Measure {
             sets: [Summary::of(first), Summary::of(second)],
@@ -142,8 +142,8 @@ fn between(sets: [&[&Walk]; 2], is_paired: bool, seed: u64) -> Comparison {
         halves: Summary::of(&halves),
         path: energy(0.0, 3),
         pace: energy(speed, 4),
-        length: measure(Walk::length, 1),
-        duration: measure(Walk::duration, 2),
+        length: measure(|walk| rounded(walk.length()), 1),
+        duration: measure(duration, 2),
     }
 }
 
@@ -152,7 +152,18 @@ fn between(sets: [&[&Walk]; 2], is_paired: bool, seed: u64) -> Comparison {
 fn vector(walk: &Walk, speed: f64) -> Vec<f64> {
     let share = 1.0 / (POINTS as f64).sqrt();
     let points = walk.resampled(POINTS);
-    points.iter().flat_map(|p| [share * p.x, share * p.y]).chain([speed * walk.duration()]).collect()
+    points.iter().flat_map(|p| [share * p.x, share * p.y]).chain([speed * duration(walk)]).collect()
+}
+
+/// A number to nine decimals: without the rounding of the sum or difference that gave it, so that equal numbers tie.
+fn rounded(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
+/// The duration of a walk to nine decimals; to six where the clock counts from 1970, whose times have no more.
+fn duration(walk: &Walk) -> f64 {
+    let is_late = walk.times.last().is_some_and(|time| time.abs() > 1e6);
+    if is_late { (walk.duration() * 1e6).round() / 1e6 } else { rounded(walk.duration()) }
 }
 
 /// The distance of each point of some walks to the nearest point of others.

@@ -160,3 +160,39 @@ fn table_of_traps() {
         );
     }
 }
+
+/// Equal walks stay equal when their clocks and places begin elsewhere.
+#[test]
+fn shifted_clocks_and_places_do_not_part_equal_walks() {
+    let set = |time: f64, place: f64, long: &[u32]| -> Vec<Walk> {
+        let walk = |(number, rows): (usize, &u32)| {
+            let parts = (0..=*rows).map(|k| f64::from(k) / 10.0);
+            let points = parts.clone().map(|part| Vec2::new(place + part, 0.0)).collect();
+            Walk {
+                name: number.to_string(),
+                times: parts.map(|part| time + part).collect(),
+                points,
+                ..Walk::default()
+            }
+        };
+        long.iter().enumerate().map(walk).collect()
+    };
+    for (time, place, long) in [
+        (0.1, 0.0, [3; 12]),
+        (7.7, 0.0, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]),
+        (1.7e9, 0.3, [3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6]),
+    ] {
+        let found = compare(&set(0.0, place, &long), &set(time, place, &long), true, 0).whole;
+        for measure in [&found.length, &found.duration] {
+            assert_eq!(measure.test.p, 1.0, "{time} {measure:?}");
+            assert_eq!(measure.paired.unwrap().equal, 12, "{time} {measure:?}");
+        }
+        assert_eq!((found.path.p, found.pace.p), (1.0, 1.0), "{time} {:?}", found.pace);
+    }
+    // Half of the walks take one row longer, half one row less: all differences have one size.
+    let long = [3, 4, 5, 6, 7, 8];
+    let other = [4, 3, 6, 5, 8, 7];
+    let found = compare(&set(0.0, 0.0, &long), &set(0.3, 0.0, &other), true, 0).whole;
+    assert_eq!(found.duration.paired.unwrap().w, 10.5);
+    assert_eq!(found.length.paired.unwrap().w, 10.5);
+}
