@@ -3,7 +3,7 @@
 use super::sighting::{Grouping, Seen};
 use super::wishes::{beside, destinations};
 use crate::data::tracks::Velocity;
-use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Value};
+use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Text, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -16,23 +16,26 @@ pub struct Request {
     pub path: String,
     /// Where it is named.
     pub span: Span,
+    /// Whether it is a learned gait.
+    pub is_gait: bool,
 }
 
 /// All files that a scenario names.
 pub fn requests(file: &ScenarioFile) -> Vec<Request> {
     let mut found = Vec::new();
+    let data = |path: String, span| Request { path, span, is_gait: false };
     for item in &file.items {
         match item {
             Item::Tracks { name, file: Some((_, path)), .. } => {
-                found.push(Request { path: path.value.clone(), span: path.span });
+                found.push(data(path.value.clone(), path.span));
                 if asks_for_destinations(file, &name.name) {
-                    found.push(Request { path: beside(&path.value), span: path.span });
+                    found.push(data(beside(&path.value), path.span));
                 }
             }
             Item::Scene(items) => {
                 for item in items {
                     if let SceneItem::Import { path, .. } = item {
-                        found.push(Request { path: path.value.clone(), span: path.span });
+                        found.push(data(path.value.clone(), path.span));
                     }
                 }
             }
@@ -41,7 +44,8 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
                     Value::Learned { file, .. } => Some(file),
                     _ => None,
                 });
-                found.extend(files.map(|file| Request { path: file.value.clone(), span: file.span }));
+                let gait = |file: &Text| Request { is_gait: true, ..data(file.value.clone(), file.span) };
+                found.extend(files.map(gait));
             }
             _ => {}
         }

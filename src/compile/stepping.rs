@@ -32,16 +32,11 @@ impl Elaborator<'_> {
         });
         for field in fields.flatten() {
             let Value::Learned { file, .. } = &field.value else { continue };
-            let text = match files.get(&file.value) {
-                Ok(bytes) => std::str::from_utf8(bytes)
-                    .map_err(|_| Diagnostic::error(Code::E0702, file.span, "the file is not UTF-8 text")),
-                Err(reason) => Err(super::files::missing(file.span, &reason)),
-            };
-            match text {
-                Ok(text) => {
-                    self.gaits.insert(file.value.clone(), Arc::from(text));
+            match files.get(&file.value) {
+                Ok(bytes) => {
+                    self.gaits.insert(file.value.clone(), String::from_utf8_lossy(bytes).into());
                 }
-                Err(error) => self.note(error),
+                Err(reason) => self.note(super::files::missing(file.span, &reason)),
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, Starts, Study, examine, own_errors, requests};
 use crate::data::tracks::Velocity;
 use crate::engine::overfull_starts;
+use crate::gait::model::{FIT_AGAIN, LearnedGait};
 use crate::syntax::ast::{Expr, Item, PropertyFile, PropertyItem, ScenarioFile, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -141,6 +142,13 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {
             reader.inputs.prints.push((request.path.clone(), Fingerprint::of(bytes)));
+            // Here and not where steps are drawn: every command reads its files here.
+            if request.is_gait
+                && let Err(error) = LearnedGait::read(bytes)
+            {
+                let title = format!("`{}` is no gait: {error}", request.path);
+                reader.report(Diagnostic::error(Code::E0723, request.span, title).hint(FIT_AGAIN));
+            }
         }
         files.insert(request.path, contents);
     }

@@ -3,8 +3,6 @@
 use super::paths;
 use crate::compile::Study;
 use crate::compile::study::World;
-use crate::gait::model::LearnedGait;
-use crate::model::{AgentId, GaitRule};
 use crate::route::{Doubt, Ways};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -17,7 +15,6 @@ pub fn survey(study: &mut Study, only: &[usize], seed: u64, ways: &Ways) -> Vec<
     let worlds: BTreeSet<usize> = asked.flat_map(|query| query.ask.worlds()).collect();
     let mut found: Vec<Diagnostic> = Vec::new();
     for world in worlds.into_iter().filter_map(|world| study.worlds.get(world)) {
-        found.extend(gaits(world));
         for one in ways.doubts(&world.scenario, seed).iter().map(|doubt| diagnostic(world, doubt)) {
             // Worlds may be alike.
             let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
@@ -28,27 +25,6 @@ pub fn survey(study: &mut Study, only: &[usize], seed: u64, ways: &Ways) -> Vec<
     }
     if !is_refused(&found) {
         found.extend(paths::settle(study, seed, ways));
-    }
-    found
-}
-
-/// An error for each file of a learned gait that gives none.
-fn gaits(world: &World) -> Vec<Diagnostic> {
-    let mut known = BTreeSet::new();
-    let mut found = Vec::new();
-    for (id, agent) in (0..).map(AgentId).zip(&world.scenario.agents) {
-        let Some(GaitRule::Learned { file, text }) = agent.body.stepper.as_ref().map(|stepper| &stepper.gait)
-        else {
-            continue;
-        };
-        if let Some(error) = known.insert(file).then(|| LearnedGait::from_json(text).err()).flatten() {
-            let said = format!("`{file}` is no gait: {error}");
-            let error = match world.place_of(id) {
-                Some(span) => Diagnostic::error(Code::E0702, span, said),
-                None => Diagnostic::placeless(Code::E0702, said),
-            };
-            found.push(error.hint("make the file again: `smc gait fit DATA -o FILE`"));
-        }
     }
     found
 }

@@ -189,3 +189,32 @@ fn n_is_short_for_trials_of_simulate_too() {
     let (short, long) = (place.call(&words("-n")), place.call(&words("--trials")));
     assert_eq!((short.code, &short.out), (Some(0), &long.out));
 }
+
+#[test]
+fn a_damaged_gait_ends_every_call_at_its_name() {
+    let whole = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/gaits/cmu.gait")).unwrap();
+    let model = HALL.replace("stepped { }", "stepped { gait = learned \"x.gait\" }");
+    let query = "property there = F<=20 s (done(worker))\nestimate P(there) by fixed(trials = 2)\n";
+    let place = Place::new(&[("hall.scn", &model), ("q.bltl", query)]);
+    place.write("x.gait", whole.as_bytes());
+    assert_eq!(place.call(&["walk", "hall.scn", "-n", "1"]).code, Some(0));
+    let at = whole.find("fnv1a64:").unwrap() + 8;
+    let digit = if whole.as_bytes()[at] == b'0' { "1" } else { "0" };
+    let other = format!("{}{digit}{}", &whole[..at], &whole[at + 1..]);
+    for bytes in [b"garbage\n".as_slice(), b"", b"\xff\xfe\0", whole[..3000].as_bytes(), other.as_bytes()] {
+        place.write("x.gait", bytes);
+        for words in [
+            &["walk", "hall.scn", "-n", "2"][..],
+            &["simulate", "hall.scn", "--until", "1s"],
+            &["show", "hall.scn"],
+            &["path", "hall.scn"],
+            &["check", "hall.scn", "q.bltl", "-q"],
+        ] {
+            let said = place.call(words);
+            assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}\n{}", said.err);
+            for part in ["error[E0723]: `x.gait` is no gait", "gait = learned \"x.gait\"", "smc gait fit"] {
+                assert!(said.err.contains(part), "{part} of {words:?}\n{}", said.err);
+            }
+        }
+    }
+}

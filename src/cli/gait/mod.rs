@@ -12,7 +12,7 @@ use super::output;
 use super::terminal::{Colors, print};
 use super::values::TextFormat;
 use crate::base::visible::visible;
-use crate::gait::model::LearnedGait;
+use crate::gait::model::{FIT_AGAIN, LearnedGait};
 use crate::gait::steps::{report, write_drawn_steps, write_steps};
 use crate::report::ExitCode as Exit;
 use crate::report::gait as reports;
@@ -62,10 +62,9 @@ fn steps(command: &StepsCommand, colors: Colors) -> Result<(), Stop> {
 /// A learned gait.
 fn open(name: &str) -> Result<LearnedGait, Stop> {
     let bytes = inputs::read(name).map_err(complaint::input)?;
-    let gait = LearnedGait::from_json(&String::from_utf8_lossy(&bytes)).map_err(|error| {
+    let gait = LearnedGait::read(&bytes).map_err(|error| {
         let title = format!("`{}` is no gait: {error}", inputs::shown(name));
-        Diagnostic::placeless(Code::E0723, title)
-            .hint("make the file again: `smc gait fit DATA -o FILE.gait`")
+        Diagnostic::placeless(Code::E0723, title).hint(FIT_AGAIN)
     });
     Ok(gait?)
 }

@@ -1,15 +1,19 @@
 //! `.gait` files: JSON with `format`, `version`, `hash` (FNV-1a of the compact text of `model`) and `model`. Numbers are written with as
 //! many digits as they need, so that a model that was read draws the same bytes as the one that was written.
 
-use super::LearnedGait;
+use super::{LARGEST, LearnedGait};
 use crate::base::fingerprint::Fingerprint;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use thiserror::Error;
 
 /// The value of `format`.
 pub const FORMAT: &str = "smc gait";
 /// The value of `version`.
 pub const VERSION: u32 = 1;
+
+/// What to do about a file that gives no model.
+pub const FIT_AGAIN: &str = "make the file again: `smc gait fit DATA -o FILE.gait`";
 
 /// Why a file gives no model.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -33,8 +37,8 @@ pub enum FileError {
         /// Of the content.
         found: String,
     },
-    /// Lists of the model do not fit together.
-    #[error("the model contradicts itself: its lists do not fit together")]
+    /// Lists of the model do not fit together, or numbers have no sense.
+    #[error("the model contradicts itself: lists do not fit together, or a number is out of its range")]
     Inconsistent,
 }
 
@@ -71,6 +75,11 @@ impl LearnedGait {
         serde_json::to_string(&file).map(|text| text + "\n").map_err(malformed)
     }
 
+    /// The model of the bytes of a file.
+    pub fn read(bytes: &[u8]) -> Result<Self, FileError> {
+        Self::from_json(String::from_utf8_lossy(bytes).trim_start_matches('\u{feff}'))
+    }
+
     /// The model of a file's text.
     pub fn from_json(text: &str) -> Result<Self, FileError> {
         let malformed = |e: serde_json::Error| FileError::Malformed(e.to_string());
@@ -86,7 +95,18 @@ impl LearnedGait {
         if found != head.hash {
             return Err(FileError::Hash { wanted: head.hash, found });
         }
-        if model.fits() { Ok(model) } else { Err(FileError::Inconsistent) }
+        let numbers = serde_json::to_value(&model).map_err(malformed)?;
+        if model.fits() && largest(&numbers) <= LARGEST { Ok(model) } else { Err(FileError::Inconsistent) }
+    }
+}
+
+/// The largest of all numbers, without their signs.
+fn largest(value: &Value) -> f64 {
+    match value {
+        Value::Number(number) => number.as_f64().map_or(f64::INFINITY, f64::abs),
+        Value::Array(list) => list.iter().map(largest).fold(0.0, f64::max),
+        Value::Object(members) => members.values().map(largest).fold(0.0, f64::max),
+        _ => 0.0,
     }
 }
 
@@ -97,7 +117,6 @@ mod tests {
     use crate::base::random::{Purpose, Stream, TrialKey};
     use crate::gait::{Draws, Foot, Gait, Stance};
     use proptest::prelude::*;
-    use serde_json::Value;
     use std::sync::Arc;
 
     fn bits(model: LearnedGait) -> Vec<u64> {
@@ -165,7 +184,7 @@ mod tests {
 
         #[test]
         fn what_has_a_right_hash_can_be_drawn_from_or_is_an_error(at in 0.0f64..1.0, new in prop::sample::select(
-            vec!["null", "0", "-1", "1e300", "[]", "[1.0]", "{}", "\"x\""],
+            vec!["null", "0", "-1", "1e-300", "1e300", "1e12", "[]", "[1.0]", "{}", "\"x\""],
         )) {
             let mut file: Value = serde_json::from_str(&made::small().to_json().unwrap()).unwrap();
             let mut all = Vec::new();
@@ -174,6 +193,8 @@ mod tests {
             *file.pointer_mut(path).unwrap() = serde_json::from_str(new).unwrap();
             file["hash"] = Fingerprint::of(file["model"].to_string().as_bytes()).to_string().into();
             if let Ok(read) = LearnedGait::from_json(&file.to_string()) {
+                let scores = super::super::score(&read, &made::steps(2, 4));
+                prop_assert!(scores.nlpd.is_finite() && scores.crps.is_finite(), "{path} {new} {scores:?}");
                 prop_assert_eq!(bits(read).len(), 440);
             }
         }

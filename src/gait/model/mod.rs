@@ -27,7 +27,7 @@ mod score;
 mod summary;
 mod transition;
 
-pub use file::{FORMAT, FileError, VERSION};
+pub use file::{FIT_AGAIN, FORMAT, FileError, VERSION};
 pub use fit::fit;
 pub use options::{FitError, Method, Options, Residuals, Warning};
 pub use person::Person;
@@ -74,19 +74,27 @@ pub struct LearnedGait {
     sides: [Side; 2],
 }
 
+/// The largest number of a model: products of so large numbers stay finite.
+const LARGEST: f64 = 1e12;
+
+/// Whether a number can be a variance or a unit.
+fn is_positive(value: &f64) -> bool {
+    (1e-15..=LARGEST).contains(value)
+}
+
 impl LearnedGait {
     fn side(&self, foot: Foot) -> &Side {
         &self.sides[usize::from(foot == Foot::Right)]
     }
 
-    /// Whether all lists fit together, so that drawing cannot fail.
+    /// Whether all lists fit together and all variances and units are positive, so that drawing and scoring cannot fail.
     fn fits(&self) -> bool {
         let components = self.sides.each_ref().map(|s| s.basis.components());
         let basis = |b: &Basis| {
             (1..=COLUMNS).contains(&b.components())
                 && b.spread.len() == b.components()
-                && b.spread.iter().all(|s| *s > 0.0)
-                && b.scale.iter().all(|s| *s >= 0.0)
+                && b.spread.iter().all(is_positive)
+                && b.scale.iter().all(|s| *s == 0.0 || is_positive(s))
         };
         let side = |s: &Side, here: usize, next: usize| {
             basis(&s.basis)
@@ -96,9 +104,10 @@ impl LearnedGait {
                 && !s.pairs.residuals.is_empty()
                 && s.pairs.places.len() == s.pairs.residuals.len() * (here + 1)
                 && s.gaussian.len() <= COLUMNS
-                && s.usual > 0.0
+                && is_positive(&s.usual)
         };
         self.people.loadings.len() <= COLUMNS
+            && self.people.within.iter().chain(&self.people.between).all(|v| *v >= 0.0)
             && side(&self.sides[0], components[0], components[1])
             && side(&self.sides[1], components[1], components[0])
     }

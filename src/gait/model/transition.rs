@@ -3,6 +3,7 @@
 
 use super::basis::Scores;
 use super::columns::COLUMNS;
+use super::is_positive;
 use crate::base::math;
 use fearless_simd::{Level, Simd, dispatch};
 use serde::{Deserialize, Serialize};
@@ -163,8 +164,8 @@ impl Transition {
             Self::Process(p) => {
                 let count = p.points.first().map_or(0, Vec::len);
                 p.lengths.len() == inputs
-                    && p.lengths.iter().all(|l| *l > 0.0)
-                    && p.noise >= 0.0
+                    && p.lengths.iter().all(is_positive)
+                    && is_positive(&p.noise)
                     && p.points.len() == inputs
                     && p.points.iter().all(|list| list.len() == count)
                     && (1..=MOST_POINTS).contains(&count)
@@ -173,13 +174,13 @@ impl Transition {
                     && p.weights.iter().all(|list| list.len() == count)
                     && p.reduction.len() == count * (count / LANES + 1) * LANES / 2
                     && p.signals.len() == outputs
-                    && p.signals.iter().all(|s| *s >= 0.0)
+                    && p.signals.iter().all(is_positive)
             }
             Self::Linear(l) => {
                 l.rows.len() == outputs
                     && l.rows.iter().all(|row| row.len() == inputs + 1)
                     && l.variances.len() == outputs
-                    && l.variances.iter().all(|s| *s >= 0.0)
+                    && l.variances.iter().all(is_positive)
             }
         }
     }
