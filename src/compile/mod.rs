@@ -74,5 +74,5 @@ pub use settings::Setting;
 pub use sighting::{Grouping, Seen, Sighting};
 pub use starts::Starts;
 pub use study::Study;
-pub use tracks::trial_of;
+pub use tracks::reading_of;
 pub use written::Written;

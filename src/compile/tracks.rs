@@ -20,7 +20,7 @@ use std::collections::BTreeSet;
 /// How many bad lines of a file are shown.
 pub(super) const SHOWN_LINES: usize = 10;
 /// The fields of tracks.
-const FIELDS: [&str; 3] = ["velocity", "memory", "trial"];
+const FIELDS: [&str; 4] = ["velocity", "memory", "trial", "fps"];
 
 /// What the fields say.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,8 +28,8 @@ struct TrackFields {
     velocity: Option<Velocity>,
     /// Seconds.
     memory: f64,
-    /// The trial of a table with several.
-    trial: Option<u64>,
+    /// What the file does not say.
+    reading: Reading,
 }
 
 impl<'a> Elaborator<'a> {
@@ -47,10 +47,13 @@ impl<'a> Elaborator<'a> {
             (Some(seen), _) => {
                 fields.map(|TrackFields { memory, .. }| Tracks::Live { seen: seen.clone(), memory })
             }
-            (None, Some((format, path))) => fields.and_then(|TrackFields { velocity, memory, trial }| {
-                let recording = self.recording(format, path, trial, files)?;
+            (None, Some((format, path))) => fields.and_then(|TrackFields { velocity, memory, reading }| {
+                let recording = self.recording(format, path, reading, files)?;
                 let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);
                 let recording = recording.with(velocity);
+                if let Some(doubt) = recording.doubt() {
+                    self.note(Diagnostic::warning(Code::W0705, path.span, doubt.said).hint(doubt.cure));
+                }
                 self.velocities.push((name.name.clone(), recording.velocity().name()));
                 Ok(Tracks::Recorded { recording, memory })
             }),
@@ -100,13 +103,12 @@ impl<'a> Elaborator<'a> {
                     Ok(seconds) => read.memory = seconds,
                     Err(Reported) => failed = true,
                 },
-                "trial" => match trial(&field.value) {
-                    Ok(number) => read.trial = Some(number),
-                    Err(error) => {
+                "trial" | "fps" => {
+                    if let Err(error) = read_into(&mut read.reading, field) {
                         self.note(error);
                         failed = true;
                     }
-                },
+                }
                 _ => {
                     self.note(unknown("field", name, field.name.span, Code::E0207, FIELDS.into_iter()));
                     failed = true;
@@ -131,7 +133,7 @@ impl<'a> Elaborator<'a> {
         &mut self,
         format: &Ident,
         path: &Text,
-        trial: Option<u64>,
+        reading: Reading,
         files: &Files,
     ) -> Lowered<Recording> {
         let Some(reader) = Format::from_name(&format.name) else {
@@ -144,28 +146,37 @@ impl<'a> Elaborator<'a> {
             Ok(bytes) => bytes,
             Err(reason) => return self.report(missing(path.span, &reason)),
         };
-        let reading = Reading { trial, ..Reading::default() };
         reader.read(bytes, &reading).or_else(|errors| self.report(unreadable(path.span, &errors)))
     }
 }
 
-/// The trial that tracks with these fields are of, if they say.
+/// What tracks with these fields say about their file.
 ///
 /// # Errors
-/// Where it is not written as a whole number.
-pub fn trial_of(body: &[Field]) -> Result<Option<u64>, Diagnostic> {
-    body.iter().find(|field| field.name.name == "trial").map(|field| trial(&field.value)).transpose()
+/// A number that cannot be one of a trial, or a rate.
+pub fn reading_of(body: &[Field]) -> Result<Reading, Diagnostic> {
+    let mut reading = Reading::default();
+    body.iter().try_for_each(|field| read_into(&mut reading, field))?;
+    Ok(reading)
 }
 
-fn trial(value: &Value) -> Result<u64, Diagnostic> {
-    if let Value::Plain(Expr { kind: ExprKind::Quantity(Quantity { value, unit: None }), .. }) = value {
-        let number = value.to_f64();
-        if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 {
-            return Ok(number as u64);
+/// Takes the fields `trial` and `fps`.
+fn read_into(reading: &mut Reading, field: &Field) -> Result<(), Diagnostic> {
+    let number = match &field.value {
+        Value::Plain(Expr { kind: ExprKind::Quantity(Quantity { value, unit: None }), .. }) => value.to_f64(),
+        _ => f64::NAN,
+    };
+    let wrong = |said: &str| Diagnostic::error(Code::E0305, value_span(&field.value), said);
+    match field.name.name.as_str() {
+        "trial" if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 => {
+            reading.trial = Some(number as u64);
         }
+        "trial" => return Err(wrong("`trial` must be a whole number from 0").hint("write `trial = 3`")),
+        "fps" if number > 0.0 && number <= 1e6 => reading.frames_per_second = Some(number),
+        "fps" => return Err(wrong("`fps` must be above 0 and at most 1e6").hint("write `fps = 25`")),
+        _ => {}
     }
-    let at = value_span(value);
-    Err(Diagnostic::error(Code::E0305, at, "`trial` must be a whole number from 0").hint("write `trial = 3`"))
+    Ok(())
 }
 
 /// A file whose lines cannot be read.

@@ -1,6 +1,6 @@
 //! The file of the tracks that are replayed.
 
-use crate::compile::{Files, trial_of};
+use crate::compile::{Files, reading_of};
 use crate::data::tracks::{Format, Reading};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
@@ -40,7 +40,7 @@ pub fn source<'f>(file: &ScenarioFile, files: &'f Files, name: &str) -> Result<T
         return wrong(format!("`--replay {name}`: the scenario has no such recording"), hint);
     };
     let bytes = files.get(&path.value).map_err(|reason| Diagnostic::error(Code::E0701, path.span, reason))?;
-    let reading = Reading { trial: trial_of(body)?, ..Reading::default() };
+    let reading = reading_of(body)?;
     match Format::from_name(&format.name) {
         Some(format) => Ok(TracksFile { format, bytes, reading, place: path.span }),
         None => {

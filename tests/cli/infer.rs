@@ -205,3 +205,50 @@ fn every_track_of_the_hotel_is_one_trace() {
     let tracks = &said.json()["score"]["tracks"];
     assert_eq!((&tracks["unsplit"], &tracks["switches"]), (&390.into(), &0.into()));
 }
+
+#[test]
+fn a_recording_that_is_not_of_people_is_doubted_once() {
+    let table = |unit: f64, velocity: &str| {
+        (0..20).fold(
+            format!("time,id,x,y{}\n", if velocity.is_empty() { "" } else { ",vx,vy" }),
+            |text, k| {
+                let x = 0.48 * f64::from(k) * unit;
+                text + &format!(
+                    "{},1,{x},0{velocity}\n{},2,{},{}{velocity}\n",
+                    0.4 * f64::from(k),
+                    0.4 * f64::from(k),
+                    2.0 * unit - x,
+                    unit
+                )
+            },
+        )
+    };
+    let place = Place::new(&[
+        ("m.csv", &table(1.0, "")),
+        ("cm.csv", &table(100.0, "")),
+        ("blank.csv", &table(1.0, ",0,0")),
+        ("frames.csv", "frame,id,x,y\n0,1,0,0\n1,1,1,0\n"),
+        (
+            "m.scn",
+            "scenario \"m\"\nhorizon = 1 s\nstep = 0.1 s\ntracks a = csv \"cm.csv\"\ntracks b = csv \"frames.csv\" { fps = 2 }\n",
+        ),
+        (
+            "bad.scn",
+            "scenario \"m\"\nhorizon = 1 s\nstep = 0.1 s\ntracks b = csv \"frames.csv\" { fps = 0 }\n",
+        ),
+    ]);
+    assert_eq!(place.call(&["infer", "m.csv"]).err, "");
+    let said = place.call(&["infer", "cm.csv"]);
+    assert_eq!((said.code, said.err.matches("W0705").count()), (Some(0), 1), "{}", said.err);
+    assert!(said.err.contains("120.00 m/s") && said.err.contains("look like centimetres"), "{}", said.err);
+    let said = place.call(&["infer", "blank.csv"]);
+    assert!(said.err.contains("warning[W0705]") && said.err.contains("all velocities"), "{}", said.err);
+    assert_eq!(place.call(&["infer", "blank.csv", "--velocity", "seen"]).err, "");
+    let said = place.call(&["infer", "m.csv", "--fps", "2"]);
+    assert!(said.code == Some(2) && said.err.contains("the table has times"), "{}", said.err);
+    let said = place.call(&["show", "m.scn"]);
+    assert_eq!((said.code, said.err.matches("W0705").count()), (Some(0), 1), "{}", said.err);
+    assert!(said.err.contains("m.scn:4:"), "{}", said.err);
+    let said = place.call(&["show", "bad.scn"]);
+    assert!(said.code == Some(2) && said.err.contains("help: write `fps = 25`"), "{}", said.err);
+}

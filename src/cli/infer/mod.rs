@@ -16,7 +16,7 @@ use crate::perception::{Clustering, Inferring, Tracking, infer};
 use crate::report::ExitCode as Exit;
 use crate::report::infer::{InferredFile, to_csv, to_json, to_page, to_svg};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
 use arguments::InferFormat;
 use motion::ChosenMotion;
 use std::collections::BTreeSet;
@@ -57,6 +57,11 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
     let mut batches = format
         .read_batches(&bytes, &reading, arguments.velocity)
         .map_err(|errors| bad_lines(&arguments.tracks, &errors))?;
+    if let Some(doubt) = format.doubt(&bytes, &reading, arguments.velocity) {
+        let said = format!("`{}`: {}", inputs::shown(&arguments.tracks), doubt.said);
+        let warning = Diagnostic::placeless(Code::W0705, said).hint(doubt.cure);
+        complaint::tell(&Diagnostic { severity: Severity::Warning, ..warning }, &[], colors);
+    }
     if batches.is_empty() {
         let said = format!("`{}` contains no observation", inputs::shown(&arguments.tracks));
         return Err(Diagnostic::placeless(Code::E0702, said).into());

@@ -19,11 +19,11 @@ enum At {
 }
 
 impl At {
-    fn after(self, c: char) -> Self {
+    fn after(self, c: char, separator: char) -> Self {
         match (self, c) {
             (Self::Quoted, '"') => Self::Closed,
             (Self::Quoted, _) | (Self::Start | Self::Closed, '"') => Self::Quoted,
-            (_, ',' | '\n') => Self::Start,
+            (_, c) if c == separator || c == '\n' => Self::Start,
             (Self::Start, c) if c.is_whitespace() => Self::Start,
             (Self::Closed, c) if c.is_whitespace() => Self::Closed,
             _ => Self::Plain,
@@ -31,9 +31,14 @@ impl At {
     }
 }
 
+/// What separates the cells of a table with this header: a comma, or the semicolon or tab of spreadsheets.
+pub(super) fn separator(header: &str) -> char {
+    [';', '\t'].into_iter().find(|one| header.contains(*one)).unwrap_or(',')
+}
+
 /// The records of a text that are not empty, each with the number of its first line, from 1, and whether its last cell
 /// ends.
-pub(super) fn records(text: &str) -> impl Iterator<Item = (usize, &str, bool)> {
+pub(super) fn records(text: &str, separator: char) -> impl Iterator<Item = (usize, &str, bool)> {
     let (mut rest, mut line) = (text, 1);
     std::iter::from_fn(move || {
         if rest.is_empty() {
@@ -45,7 +50,7 @@ pub(super) fn records(text: &str) -> impl Iterator<Item = (usize, &str, bool)> {
                 end = place + 1;
                 break;
             }
-            at = at.after(c);
+            at = at.after(c, separator);
         }
         let (record, after) = rest.split_at(end);
         let number = line;
@@ -58,14 +63,14 @@ pub(super) fn records(text: &str) -> impl Iterator<Item = (usize, &str, bool)> {
 
 /// The cells of a record without blanks and quotation marks around them, each with the character (from 1) at which it
 /// begins.
-pub(super) fn cells(record: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+pub(super) fn cells(record: &str, separator: char) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let (mut rest, mut column) = (Some(record), 1);
     std::iter::from_fn(move || {
         let text = rest?;
         let mut at = At::Start;
         let comma = text.char_indices().find(|(_, c)| {
-            let ends = *c == ',' && at != At::Quoted;
-            at = at.after(*c);
+            let ends = *c == separator && at != At::Quoted;
+            at = at.after(*c, separator);
             ends
         });
         let cell = comma.map_or(text, |(place, _)| &text[..place]);
@@ -88,8 +93,9 @@ mod tests {
     #[test]
     fn quoted_cells_hold_anything() {
         let text = "a, \"b, \"\"c\"\"\n\" ,5\" wide,\"\"\r\n\n é , x\n";
-        let all = |record| cells(record).map(|(k, c)| (k, c.into_owned())).collect::<Vec<_>>();
-        let found: Vec<_> = records(text).map(|(line, record, ends)| (line, all(record), ends)).collect();
+        let all = |record| cells(record, ',').map(|(k, c)| (k, c.into_owned())).collect::<Vec<_>>();
+        let found: Vec<_> =
+            records(text, ',').map(|(line, record, ends)| (line, all(record), ends)).collect();
         let cell = |k: usize, text: &str| (k, text.to_owned());
         assert_eq!(
             found,
@@ -98,6 +104,9 @@ mod tests {
                 (4, vec![cell(2, "é"), cell(6, "x")], true),
             ]
         );
-        assert_eq!(records("a,\"b\nc").map(|(line, _, ends)| (line, ends)).collect::<Vec<_>>(), [(1, false)]);
+        assert_eq!(
+            records("a,\"b\nc", ',').map(|(line, _, ends)| (line, ends)).collect::<Vec<_>>(),
+            [(1, false)]
+        );
     }
 }

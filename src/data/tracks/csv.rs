@@ -1,10 +1,10 @@
 //! Reader of tracks as comma-separated values.
 //!
-//! The header names the columns, in any order: `id` or `agent`, `x,y`, and either `time` in seconds or `frame`; `vx,vy` may
+//! The header names the columns, in any order and in capitals or not: `id` or `agent`, `x,y`, and either `time` in seconds or `frame`; `vx,vy` may
 //! follow, `trial` where a table has several, and `present`, which is 0 in rows of agents that are absent. Other columns are
-//! ignored. Lengths are metres. A table with `frame` needs the frames per second. `smc simulate` writes such tables.
+//! ignored. Cells may be separated by semicolons or tabs, and numbers then have commas as decimal points. Lengths are metres. A table with `frame` needs the frames per second. `smc simulate` writes such tables.
 
-use super::cells::{cells, records};
+use super::cells::{cells, records, separator};
 use super::line::{LineError, number, quoted, whole_fault};
 use super::recording::{Clock, Recording};
 use super::rows::{Row, people, usual_stride};
@@ -22,15 +22,22 @@ const AGENT: usize = 7;
 const TRIAL: usize = 8;
 const PRESENT: usize = 9;
 
-/// Where the columns of a table stand, from 0.
-struct Header([Option<usize>; COLUMNS.len()]);
+/// Whether a column of this name says who is in a row.
+pub(super) fn is_person(name: &str) -> bool {
+    [COLUMNS[ID], COLUMNS[AGENT]].iter().any(|known| name.eq_ignore_ascii_case(known))
+}
+
+/// Where the columns of a table stand, from 0, and what separates its cells.
+struct Header([Option<usize>; COLUMNS.len()], char);
 
 impl Header {
-    fn read(line: usize, record: &str) -> Result<Self, Vec<LineError>> {
+    fn read(line: usize, record: &str, separator: char) -> Result<Self, Vec<LineError>> {
         let mut places = [None; COLUMNS.len()];
         let mut errors = Vec::new();
-        for (k, (column, field)) in cells(record).enumerate() {
-            let Some(name) = COLUMNS.iter().position(|name| *name == field) else { continue };
+        for (k, (column, field)) in cells(record, separator).enumerate() {
+            let Some(name) = COLUMNS.iter().position(|name| field.eq_ignore_ascii_case(name)) else {
+                continue;
+            };
             if places[name].replace(k).is_some() {
                 errors.push(LineError::at(line, column, format!("column {} is there twice", quoted(&field))));
             }
@@ -52,7 +59,7 @@ impl Header {
         if vx.is_some() != vy.is_some() {
             errors.push(LineError::whole(line, "the header must have both `vx` and `vy` or neither"));
         }
-        if errors.is_empty() { Ok(Self(places)) } else { Err(errors) }
+        if errors.is_empty() { Ok(Self(places, separator)) } else { Err(errors) }
     }
 }
 
@@ -68,13 +75,17 @@ pub fn read_csv(
     frames_per_second: Option<f64>,
     trial: Option<u64>,
 ) -> Result<Recording, Vec<LineError>> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut records = records(text);
+    let separator = separator(text.trim_start().lines().next().unwrap_or_default());
+    let mut records = records(text, separator);
     let Some((line, first, _)) = records.next() else {
         return Err(vec![LineError::of_file("the file contains no observation")]);
     };
-    let header = Header::read(line, first)?;
+    let header = Header::read(line, first, separator)?;
     let has_frames = header.0[FRAME].is_some();
+    if !has_frames && frames_per_second.is_some() {
+        let message = "the table has times, so it takes no number of frames per second";
+        return Err(vec![LineError::at(line, 1, message)]);
+    }
     let rate = frames_per_second.filter(|rate| rate.is_finite() && *rate > 0.0);
     if has_frames && rate.is_none() {
         let found = frames_per_second.map_or_else(String::new, |rate| format!(" (got {rate})"));
@@ -112,7 +123,7 @@ fn read_row(
 ) {
     let before = errors.len();
     let mut found: [Option<(usize, Cow<'_, str>)>; COLUMNS.len()] = [const { None }; COLUMNS.len()];
-    for (k, cell) in cells(record).enumerate() {
+    for (k, cell) in cells(record, header.1).enumerate() {
         if let Some(name) = header.0.iter().position(|place| *place == Some(k)) {
             found[name] = Some(cell);
         }
@@ -130,7 +141,8 @@ fn read_row(
     };
     for (name, value) in values.iter_mut().enumerate() {
         let Some(cell) = &found[name] else { continue };
-        match number(&cell.1) {
+        let decimal = if header.1 == ',' { cell.1.clone() } else { cell.1.replace(',', ".").into() };
+        match number(&decimal) {
             Err(said) => fault(name, cell, said),
             Ok(number) => {
                 *value = number;
@@ -267,6 +279,30 @@ mod tests {
                 "line 3, column 11: present `2` is neither 0 nor 1",
                 "line 4: a quoted cell does not end",
             ]
+        );
+    }
+
+    #[test]
+    fn spreadsheets_write_tables_too() {
+        let wanted = read_csv("time,id,x,y\n0,1,0.5,2\n0.4,1,1,2.5\n", None, None).unwrap();
+        for text in [
+            "\"time\",\"id\",\"x\",\"y\"\n\"0\",\"1\",\"0.5\",\"2\"\n\"0.4\",\"1\",\"1\",\"2.5\"\n",
+            "Time,ID,X,Y\r\n0,1,0.5,2\r\n0.4,1,1,2.5\r\n",
+            "time;id;x;y\n0;1;0,5;2\n0,4;1;1;2,5\n",
+            "TIME\tAgent\tx\ty\n0\t1\t0.5\t2\n0.4\t1\t1\t2.5\n",
+        ] {
+            assert_eq!(read_csv(text, None, None).unwrap(), wanted, "{text}");
+            use super::super::format::{Format, Reading};
+            let marked = format!("\u{feff}{text}");
+            let format = Format::of(&marked).unwrap();
+            assert_eq!(
+                (format.name, format.read(&marked, &Reading::default()).unwrap()),
+                ("csv", wanted.clone())
+            );
+        }
+        assert_eq!(
+            said("time,id,x,y\n0,1,0,0\n", Some(25.0)),
+            ["line 1, column 1: the table has times, so it takes no number of frames per second"]
         );
     }
 }

@@ -32,28 +32,44 @@ const NAMES: [&str; 8] = ["frame", "id", "x", "z", "y", "vx", "vz", "vy"];
 /// number from 0 to 4294967295, and a person who is in one frame twice; in the order of the lines. A text
 /// without any row is one error, and so is one whose velocities tell of another interval.
 pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
+    read_table(text, None)
+}
+
+/// The same, with the frames per second of the film where they are known.
+pub(super) fn read_table(text: &str, fps: Option<f64>) -> Result<Recording, Vec<LineError>> {
+    let mut heights = Vec::new();
     let mut rows = Vec::with_capacity(text.len() / 128);
     let mut errors = Vec::new();
     for (k, line) in text.lines().enumerate() {
         if line.trim().is_empty() {
             continue;
         }
-        if let Some(row) = read_row(k + 1, line, &mut errors) {
+        if let Some((row, height)) = read_row(k + 1, line, &mut errors) {
             rows.push(row);
+            heights.push(height);
         }
+    }
+    let is_flat = rows.windows(2).all(|pair| pair[0].position.y == pair[1].position.y);
+    if is_flat && heights.windows(2).any(|pair| pair[0] != pair[1]) {
+        let message = "column 5 (y) has one value in all rows, and column 4 (the height z) has many: \
+                       the columns seem to be exchanged; write `frame id x z y vx vz vy`";
+        errors.push(LineError::of_file(message));
     }
     let people = people(rows, errors, |row| format!("in frame {}", row.frame))?;
     let stride = usual_stride(&people).unwrap_or(DEFAULT_STRIDE);
-    if let Some(seconds) = other_interval(&people, stride) {
+    let usual = fps.map_or(SECONDS_PER_ANNOTATION, |fps| f64::from(stride) / fps);
+    if let Some(seconds) = other_interval(&people, stride, usual) {
+        let whose = if fps.is_some() { "the stated frames per second give" } else { "the format has" };
         let message = format!(
-            "the velocities in the file imply annotations {seconds:.2} s apart, but the format has {SECONDS_PER_ANNOTATION} s"
+            "the velocities in the file imply annotations {seconds:.2} s apart, but {whose} {usual} s"
         );
         return Err(vec![LineError::of_file(message)]);
     }
-    Ok(Recording::new(people, Clock::film(stride, SECONDS_PER_ANNOTATION / f64::from(stride))))
+    Ok(Recording::new(people, Clock::film(stride, usual / f64::from(stride))))
 }
 
-fn read_row(at: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Row> {
+/// A row and its height.
+fn read_row(at: usize, line: &str, errors: &mut Vec<LineError>) -> Option<(Row, f64)> {
     let count = line.split_whitespace().count();
     if count != NAMES.len() {
         let message = format!(
@@ -71,17 +87,13 @@ fn read_row(at: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Row> {
     if let Some(fault) = coordinate_fault(position) {
         errors.push(LineError::whole(at, fault));
     }
-    (errors.len() == before).then(|| Row {
-        line: at,
-        frame: values[0] as u32,
-        id: values[1] as u32,
-        position,
-        velocity: Some(Vec2::new(values[5], values[7])),
-    })
+    let velocity = Some(Vec2::new(values[5], values[7]));
+    let row = Row { line: at, frame: values[0] as u32, id: values[1] as u32, position, velocity };
+    (errors.len() == before).then_some((row, values[3]))
 }
 
 /// Seconds between two annotations, if places and velocities together tell clearly that these are others.
-fn other_interval(people: &[Person], stride: u32) -> Option<f64> {
+fn other_interval(people: &[Person], stride: u32, usual: f64) -> Option<f64> {
     let (mut gone, mut told) = (0.0, 0.0);
     // From end to end: who waits is annotated here and there, and goes nowhere.
     for person in people {
@@ -90,7 +102,7 @@ fn other_interval(people: &[Person], stride: u32) -> Option<f64> {
             let annotations = f64::from(pair[1].frame - pair[0].frame) / f64::from(stride);
             way += pair[1].position - pair[0].position;
             let velocities = pair.iter().filter_map(|sample| sample.velocity).sum::<Vec2>();
-            sum += velocities * (0.5 * annotations * SECONDS_PER_ANNOTATION);
+            sum += velocities * (0.5 * annotations * usual);
         }
         gone += way.norm();
         told += sum.norm();
@@ -98,7 +110,7 @@ fn other_interval(people: &[Person], stride: u32) -> Option<f64> {
     let most = if gone > told { gone } else { told };
     let clear =
         most > ENOUGH && gone > 0.0 && told > 0.0 && !(1.0 / DOUBTFUL..DOUBTFUL).contains(&(gone / told));
-    clear.then(|| SECONDS_PER_ANNOTATION * gone / told)
+    clear.then(|| usual * gone / told)
 }
 
 #[cfg(test)]
@@ -181,5 +193,26 @@ mod tests {
         let recording = read_eth_biwi("780 1 0 0 0 0 0 0\n786 1 1 0 0 0 0 0\n798 2 1 0 0 0 0 0").unwrap();
         assert!((recording.frames_per_second() - 15.0).abs() < 1e-12);
         assert!((recording.time_of(798) - 1.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn exchanged_columns_and_other_rates_are_refused() {
+        let rows = |row: fn(f64, f64) -> String| -> String {
+            (0..20).map(|k| format!("{} 1 {}\n", k * 10, row(f64::from(k) * 0.4, f64::from(k)))).collect()
+        };
+        let exchanged = read_eth_biwi(&rows(|x, y| format!("{x} {y} 0 1 0 0"))).unwrap_err();
+        assert!(exchanged[0].message.contains("the columns seem to be exchanged"), "{exchanged:?}");
+        assert!(read_eth_biwi(&rows(|x, _| format!("{x} 0 0 1 0 0"))).is_ok(), "somebody may walk along x");
+        let right = rows(|x, _| format!("{x} 0 1 1 0 0"));
+        assert_eq!(read_table(&right, Some(25.0)).unwrap(), read_eth_biwi(&right).unwrap());
+        let found = read_table(&right, Some(2.5)).unwrap_err();
+        assert!(
+            found[0].message.ends_with("0.40 s apart, but the stated frames per second give 4 s"),
+            "{found:?}"
+        );
+        // Velocities of 0 are none.
+        let blank = read_eth_biwi(&rows(|x, _| format!("{x} 0 1 0 0 0"))).unwrap();
+        assert_eq!(blank.velocity(), super::super::recording::Velocity::Seen);
+        assert!((blank.at(4.0)[0].velocity.x - 1.0).abs() < 1e-9);
     }
 }

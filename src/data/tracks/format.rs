@@ -1,13 +1,15 @@
 //! The formats of recordings: one table, which reading, options and messages use.
 
 use super::batch::Batch;
-use super::csv::read_csv;
-use super::eth_biwi::read_eth_biwi;
+use super::cells::{cells, separator};
+use super::csv::{is_person, read_csv};
+use super::eth_biwi::read_table;
 use super::jsonl::read_json_lines;
 use super::line::LineError;
 use super::observations::{read_identified, read_observations};
 use super::parquet::read_parquet;
 use super::pedpy::read_pedpy;
+use super::plausible::Doubt;
 use super::recording::{Recording, Velocity};
 use super::trajnet::read_trajnet;
 
@@ -61,14 +63,14 @@ static FORMATS: [Format; 7] = [
     },
     Format {
         name: "eth_biwi",
-        read: Reader::Text(|text, _| read_eth_biwi(text)),
+        read: Reader::Text(|text, reading| read_table(text, reading.frames_per_second)),
         has_trials: false,
         read_batches: None,
         begins: |line| line.split_whitespace().filter(|field| field.parse::<f64>().is_ok()).count() == 8,
     },
     Format {
         name: "trajnet",
-        read: Reader::Text(|text, _| read_trajnet(text)),
+        read: Reader::Text(|text, reading| read_trajnet(text, reading.frames_per_second)),
         has_trials: false,
         read_batches: None,
         begins: |line| line.starts_with('{') && (line.contains("\"scene\"") || line.contains("\"track\"")),
@@ -78,14 +80,11 @@ static FORMATS: [Format; 7] = [
         read: Reader::Text(|text, reading| read_csv(text, reading.frames_per_second, reading.trial)),
         has_trials: true,
         read_batches: None,
-        begins: |line| {
-            let mut names = line.split(',').map(|name| name.trim_start_matches('\u{feff}').trim());
-            names.any(|name| name == "id" || name == "agent")
-        },
+        begins: |line| cells(line, separator(line)).any(|(_, name)| is_person(&name)),
     },
     Format {
         name: "pedpy",
-        read: Reader::Text(|text, _| read_pedpy(text)),
+        read: Reader::Text(|text, reading| read_pedpy(text, reading.frames_per_second)),
         has_trials: false,
         read_batches: None,
         begins: |line| line.starts_with('#') || (4..6).contains(&line.split_whitespace().count()),
@@ -98,6 +97,9 @@ static FORMATS: [Format; 7] = [
         begins: |line| line.starts_with('{') && line.contains("\"seen\""),
     },
 ];
+
+/// The formats whose files have times, so that they need no rate.
+const TIMED: [&str; 3] = ["parquet", "jsonl", "observations"];
 
 impl Format {
     /// All formats.
@@ -112,7 +114,7 @@ impl Format {
 
     /// The format that the first line of a file shows.
     pub fn of(bytes: impl AsRef<[u8]>) -> Option<&'static Self> {
-        let text = String::from_utf8_lossy(bytes.as_ref());
+        let text = String::from_utf8_lossy(unmarked(bytes.as_ref()));
         let line = text.lines().map(str::trim).find(|line| !line.is_empty())?;
         FORMATS.iter().find(|format| (format.begins)(line))
     }
@@ -131,10 +133,19 @@ impl Format {
 
     /// Whether the format has what is asked for.
     fn check(&self, reading: &Reading) -> Result<(), Vec<LineError>> {
-        if self.has_trials || reading.trial.is_none() {
-            return Ok(());
-        }
-        Err(vec![LineError::of_file(format!("`{}` has no trials to choose from", self.name))])
+        let said = match reading {
+            Reading { trial: Some(_), .. } if !self.has_trials => "no trials to choose from",
+            Reading { frames_per_second: Some(_), .. } if TIMED.contains(&self.name) => {
+                "times, so it takes no number of frames per second"
+            }
+            _ => return Ok(()),
+        };
+        Err(vec![LineError::of_file(format!("`{}` has {said}", self.name))])
+    }
+
+    /// What is implausible about a recording with these velocities, where everybody has an id.
+    pub fn doubt(&self, bytes: impl AsRef<[u8]>, reading: &Reading, velocity: Velocity) -> Option<Doubt> {
+        self.read(bytes, reading).ok()?.with(velocity).doubt()
     }
 
     /// Reads batches of observations, with the recorded velocities or none.
@@ -159,8 +170,13 @@ impl Format {
     }
 }
 
+/// A text without the mark of UTF-8 that some programs write first.
+fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes)
+}
+
 fn text(bytes: &[u8]) -> Result<&str, Vec<LineError>> {
-    std::str::from_utf8(bytes).map_err(|_| vec![LineError::of_file("the file is not UTF-8 text")])
+    std::str::from_utf8(unmarked(bytes)).map_err(|_| vec![LineError::of_file("the file is not UTF-8 text")])
 }
 
 #[cfg(test)]

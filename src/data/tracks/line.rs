@@ -55,11 +55,14 @@ pub(in crate::data) fn fields(line: &str) -> impl Iterator<Item = (usize, &str)>
 /// A field for a message: quoted, and cut where it is long.
 pub(in crate::data) fn quoted(field: &str) -> String {
     const LONGEST: usize = 24;
-    if field.chars().count() <= LONGEST {
+    let count = field.chars().count();
+    if count <= LONGEST {
         return format!("`{}`", field.escape_debug());
     }
-    let head: String = field.chars().take(LONGEST).collect();
-    format!("`{}…`", head.escape_debug())
+    // Of names that begin alike the ends differ.
+    let head: String = field.chars().take(LONGEST / 2).collect();
+    let tail: String = field.chars().skip(count - LONGEST / 2).collect();
+    format!("`{}…{}`", head.escape_debug(), tail.escape_debug())
 }
 
 /// The finite number of a field.
@@ -87,7 +90,7 @@ pub(in crate::data) fn whole_fault(value: f64) -> Option<&'static str> {
     }
 }
 
-/// The numbers in the first fields of a line, whose names are given; the first two are whole. Faults are added to the errors.
+/// The numbers in the first fields of a line, whose names are given; frames and ids are whole. Faults are added to the errors.
 pub(super) fn numbers<const N: usize>(
     at: usize,
     line: &str,
@@ -98,7 +101,7 @@ pub(super) fn numbers<const N: usize>(
     for (k, (column, field)) in fields(line).take(N).enumerate() {
         let found = number(field).and_then(|value| {
             values[k] = value;
-            whole_fault(value).filter(|_| k < 2).map_or(Ok(()), Err)
+            whole_fault(value).filter(|_| ["frame", "id"].contains(&names[k])).map_or(Ok(()), Err)
         });
         if let Err(fault) = found {
             errors.push(LineError::at(at, column, format!("{} {} {fault}", names[k], quoted(field))));

@@ -30,6 +30,9 @@ impl Velocity {
 /// How far, in frames of the film, a time may lie from an annotated frame and still mean that frame.
 const SAME_FRAME: f64 = 0.5;
 
+/// Whoever comes farther from the first place does not stand, m.
+const MOVES: f64 = 0.5;
+
 /// One person in one annotated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -88,22 +91,39 @@ pub struct Recording {
     frames: Vec<u32>,
     clock: Clock,
     velocity: Velocity,
+    velocities_are_blank: bool,
 }
 
 impl Recording {
-    /// A recording of people with ascending ids. Where a sample lacks a velocity, all become the seen ones.
+    /// A recording of people with ascending ids. Where a sample lacks a velocity, all become the seen ones; so they do where
+    /// columns are filled with 0 although somebody moves.
     pub(super) fn new(people: Vec<Person>, clock: Clock) -> Self {
         let mut frames: Vec<u32> = people.iter().flat_map(|p| p.samples.iter().map(|s| s.frame)).collect();
         frames.sort_unstable();
         frames.dedup();
-        let all = people.iter().flat_map(|person| &person.samples).all(|sample| sample.velocity.is_some());
-        let recording = Self { people, frames, clock, velocity: Velocity::Recorded };
-        if all { recording } else { recording.with(Velocity::Seen) }
+        let samples = || people.iter().flat_map(|person| &person.samples);
+        let all = samples().all(|sample| sample.velocity.is_some());
+        let moves = |person: &Person| {
+            let far = |sample: &Sample| (sample.position - person.samples[0].position).norm() > MOVES;
+            person.samples.iter().any(far)
+        };
+        let velocities_are_blank =
+            samples().all(|sample| sample.velocity == Some(Vec2::zeros())) && people.iter().any(moves);
+        let velocity = Velocity::Recorded;
+        let recording = Self { people, frames, clock, velocity, velocities_are_blank: false };
+        let recording = if all && !velocities_are_blank { recording } else { recording.with(Velocity::Seen) };
+        Self { velocities_are_blank, ..recording }
+    }
+
+    /// Whether the file has only velocities of 0 although somebody moves.
+    pub(super) const fn velocities_are_blank(&self) -> bool {
+        self.velocities_are_blank
     }
 
     /// The recording with these velocities. A file without velocities has only the seen ones, which then stay.
     #[must_use]
     pub fn with(mut self, velocity: Velocity) -> Self {
+        self.velocities_are_blank &= velocity == Velocity::Recorded;
         if velocity == Velocity::Seen && self.velocity != velocity {
             for person in &mut self.people {
                 let mut last: Option<Sample> = None;

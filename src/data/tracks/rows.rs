@@ -47,6 +47,17 @@ pub(super) fn people(
     Ok(rows.chunk_by(|a, b| a.id == b.id).map(person).collect())
 }
 
+/// The frames per second of a file that states `own`, and of a call that states others; an error where they differ.
+pub(super) fn agreed(own: Option<f64>, stated: Option<f64>, errors: &mut Vec<LineError>) -> Option<f64> {
+    if let (Some(own), Some(stated)) = (own, stated)
+        && (stated / own - 1.0).abs() > 0.01
+    {
+        let message = format!("the file has {own} frames per second, but {stated} are stated");
+        errors.push(LineError::of_file(message));
+    }
+    own.or(stated)
+}
+
 /// The most frequent distance in frames between successive observations of one person; of equally
 /// frequent ones the smallest.
 pub(super) fn usual_stride(people: &[Person]) -> Option<u32> {

@@ -8,7 +8,7 @@
 
 use super::line::{LineError, json_fault};
 use super::recording::{Clock, Recording};
-use super::rows::{Row, people, usual_stride};
+use super::rows::{Row, agreed, people, usual_stride};
 use crate::base::geometry::{Vec2, coordinate_fault};
 use serde::Deserialize;
 
@@ -37,7 +37,7 @@ struct Track {
 /// # Errors
 /// Every bad line: not such an object, a position too far from the origin, a rate that is not positive or not that of
 /// the first scene, and a person who is in one frame twice; a file without a rate.
-pub fn read_trajnet(text: &str) -> Result<Recording, Vec<LineError>> {
+pub fn read_trajnet(text: &str, fps: Option<f64>) -> Result<Recording, Vec<LineError>> {
     let mut errors = Vec::new();
     let mut rows = Vec::with_capacity(text.len() / 64);
     let mut rate: Option<(f64, usize)> = None;
@@ -78,12 +78,13 @@ pub fn read_trajnet(text: &str) -> Result<Recording, Vec<LineError>> {
             Ok(_) => errors.push(LineError::whole(number, "expected either `scene` or `track`")),
         }
     }
+    let rate = agreed(rate.map(|(rate, _)| rate), fps, &mut errors);
     if rate.is_none() && errors.is_empty() && !rows.is_empty() {
         errors.push(LineError::of_file("no scene has a rate `fps`"));
     }
     let people = people(rows, errors, |row| format!("in frame {}", row.frame))?;
     let stride = usual_stride(&people).unwrap_or(1);
-    let rows_per_second = rate.map_or(1.0, |(fps, _)| fps);
+    let rows_per_second = rate.unwrap_or(1.0);
     Ok(Recording::new(people, Clock::film(stride, 1.0 / (rows_per_second * f64::from(stride)))))
 }
 
@@ -97,7 +98,7 @@ mod tests {
                     {\"track\": {\"f\": 10, \"p\": 3, \"x\": 1, \"y\": 2.5}}\n\n\
                     {\"track\": {\"f\": 20, \"p\": 3, \"x\": 1.4, \"y\": 2.5}}\n\
                     {\"track\": {\"f\": 20, \"p\": 3, \"x\": 9, \"y\": 9, \"prediction_number\": 0}}\n";
-        let recording = read_trajnet(text).unwrap();
+        let recording = read_trajnet(text, None).unwrap();
         assert!((recording.frames_per_second() - 25.0).abs() < 1e-12);
         assert!((recording.duration() - 0.4).abs() < 1e-12);
         assert!((recording.people()[0].samples[1].velocity.unwrap().x - 1.0).abs() < 1e-12);
@@ -108,15 +109,16 @@ mod tests {
         let text = "{\"scene\": {\"fps\": 2.5}}\n{\"scene\": {\"fps\": 5}}\n{\"track\": {\"f\": 1, \"p\": 1, \"x\": 0}}\n\
                     oops\n{}\n{\"track\": {\"f\": -1, \"p\": 1, \"x\": 0, \"y\": 0}}\n\
                     {\"track\": {\"f\": 1, \"p\": 1, \"x\": 0, \"y\": 9e9}}\n{\"scene\": {\"fps\": 0}}\n";
-        let said: Vec<String> = read_trajnet(text).unwrap_err().iter().map(ToString::to_string).collect();
+        let said: Vec<String> =
+            read_trajnet(text, None).unwrap_err().iter().map(ToString::to_string).collect();
         assert_eq!(said.len(), 7, "{said:?}");
         assert_eq!(said[0], "line 2: `fps` is 5, but 2.5 in line 1: the rates are mixed");
         assert!(said[1].starts_with("line 3, column") && said[1].contains("missing field `y`"), "{said:?}");
         assert!(said[2].starts_with("line 4, column 1: "), "{said:?}");
         assert_eq!(said[3], "line 5: expected either `scene` or `track`");
         assert_eq!(said[6], "line 8: `fps` must be positive (got 0)");
-        let bare = read_trajnet("{\"track\": {\"f\": 1, \"p\": 1, \"x\": 0, \"y\": 0}}").unwrap_err();
+        let bare = read_trajnet("{\"track\": {\"f\": 1, \"p\": 1, \"x\": 0, \"y\": 0}}", None).unwrap_err();
         assert_eq!(bare[0].to_string(), "no scene has a rate `fps`");
-        assert_eq!(read_trajnet("").unwrap_err()[0].to_string(), "the file contains no observation");
+        assert_eq!(read_trajnet("", None).unwrap_err()[0].to_string(), "the file contains no observation");
     }
 }
