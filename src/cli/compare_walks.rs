@@ -101,6 +101,7 @@ pub(super) fn span(source: &Source, error: &LineError) -> Span {
     let lines = source.text.split_inclusive('\n');
     let start: usize = lines.clone().take(error.line.saturating_sub(1)).map(str::len).sum();
     let line = lines.clone().nth(error.line.saturating_sub(1)).unwrap_or_default().trim_end();
+    let line = if error.line == 0 { line.split(',').next().unwrap_or_default() } else { line };
     let Some(column) = error.column else { return Span::new(source.id, start, start + line.len()) };
     let before = line.char_indices().nth(column - 1).map_or(line.len(), |(at, _)| at);
     let ends: &[char] = if line.contains(',') { &[','] } else { &[' ', '\t'] };

@@ -170,10 +170,7 @@ fn data_that_is_wrong_has_a_code_and_a_place() {
     place.write("still.csv", format!("{}\n{}", rows[0], still("still", 0.02)).as_bytes());
     place.write("rates.csv", format!("{}\n{}{}", rows[0], still("a", 0.02), still("b", 0.05)).as_bytes());
     for (words, parts) in [
-        (
-            &["circle.bvh", "--unit", "1m"][..],
-            &["E0721", "circle.bvh:1:1", "multiply the unit by 0.0100"][..],
-        ),
+        (&["circle.bvh", "--unit", "1m"][..], &["E0721", "circle.bvh:1:1", "help: write `--unit 1cm`"][..]),
         (&["still.csv"], &["E0721", "still.csv:1:1", "take `still` has no steps"]),
         (&["headless.bvh"], &["E0720", "headless.bvh:1:1", "no layout fits the skeleton"]),
         (&["circle.bvh", "--left", "x,y", "--right", "z,w"], &["E0720", "has no feet"]),
@@ -200,7 +197,7 @@ fn data_that_is_wrong_has_a_code_and_a_place() {
     // Steps in feet read as metres: the longest ones are dropped.
     let said = place.call(&["gait", "steps", "circle.bvh", "--unit", "2.5cm"]);
     assert!(
-        said.code == Some(0) && said.err.contains("multiply the unit by 0.3937"),
+        said.code == Some(0) && said.err.contains("help: write `--unit 1cm`"),
         "{}{}",
         said.out,
         said.err
@@ -222,4 +219,140 @@ fn the_gait_that_ships_draws_the_same_bytes_everywhere() {
     assert!(said.out.contains("mocap.cs.cmu.edu") && said.out.contains("NSF EIA-0196217"), "{}", said.out);
     assert!(!said.out.to_lowercase().contains("bandai"));
     assert!(at_root(&["completions", "bash"]).out.contains("gait"));
+}
+
+/// Half a minute of straight legs of 90 cm with steps of 60 cm, as BVH in units of so many centimetres.
+fn walker(unit: f64, is_z_up: bool, has_six_channels: bool, is_in_radians: bool) -> String {
+    let turned = |[x, y, z]: [f64; 3]| if is_z_up { [x, -z, y] } else { [x, y, z] }.map(|cell| cell / unit);
+    let written = |place: [f64; 3]| turned(place).map(|cell| format!("{cell:.6}")).join(" ");
+    let legs = ["Left", "Right"].map(|side| {
+        let x = if side == "Left" { 9.0 } else { -9.0 };
+        [("UpLeg", [x, 0.0, 0.0]), ("Foot", [0.0, -90.0, 0.0]), ("ToeBase", [0.0, -4.0, 15.0])]
+            .map(|(joint, offset)| (format!("{side}{joint}"), offset))
+    });
+    let channels = "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation";
+    let of_joints = if has_six_channels { channels } else { "3 Zrotation Xrotation Yrotation" };
+    let mut text = format!("HIERARCHY\nROOT Hips {{ OFFSET 0 0 0 CHANNELS {channels}\n");
+    for leg in &legs {
+        for (name, offset) in leg {
+            let _ = writeln!(text, "JOINT {name} {{ OFFSET {} CHANNELS {of_joints}", written(*offset));
+        }
+        text += "End Site { OFFSET 0 0 0 } } } }\n";
+    }
+    let frames = 300;
+    let _ = writeln!(text, "}}\nMOTION\nFrames: {frames}\nFrame Time: 0.02");
+    for frame in 0..frames {
+        let (step, share) = (frame / 25, f64::from(frame % 25) / 25.0);
+        let stance = 30.0 - 60.0 * share;
+        let height = (90.0_f64 * 90.0 - stance * stance).sqrt() + 4.0;
+        let mut cells = vec![written([0.0, height, 2.4 * f64::from(frame)]), "0 0 0".to_owned()];
+        for (k, leg) in legs.iter().enumerate() {
+            let ahead = if step % 2 == k as i32 { stance } else { -stance };
+            let angle =
+                -(ahead / 90.0_f64).asin() * if is_in_radians { 1.0 } else { 180.0 / std::f64::consts::PI };
+            for ((_, offset), angle) in leg.iter().zip([angle, -angle, 0.0]) {
+                if has_six_channels {
+                    cells.push(written(*offset));
+                }
+                cells.push(format!("0 {angle:.8} 0"));
+            }
+        }
+        text += &(cells.join(" ") + "\n");
+    }
+    text
+}
+
+#[test]
+fn the_hint_about_a_take_of_no_person_gives_the_right_steps() {
+    let place = Place::new(&[("walk.bvh", &walker(1.0, false, false, false))]);
+    let steps =
+        |options: &[&str]| place.call(&[&["gait", "steps", "walk.bvh", "--format", "csv"], options].concat());
+    let right = steps(&[]);
+    assert!(
+        right.code == Some(0) && right.err.is_empty() && right.out.contains(",0.6"),
+        "{}{}",
+        right.out,
+        right.err
+    );
+    let lengths = |table: &str| -> Vec<f64> {
+        table.lines().skip(1).map(|line| line.split(',').nth(7).unwrap().parse().unwrap()).collect()
+    };
+    for (text, wanted) in [
+        (walker(0.1, false, false, false), "--unit 1mm"),
+        (walker(2.54, false, false, false), "--unit 1in"),
+        (walker(5.64, false, false, false), "--unit 0.0564m"),
+        (walker(30.48, false, false, false), "--unit 1ft"),
+        (walker(100.0, false, false, false), "--unit 1m"),
+        (walker(1.0, true, false, false), "--up z"),
+        (walker(1.0, false, true, false), "--replace-offsets"),
+        (walker(1.0, false, false, true), "--radians"),
+        (walker(2.54, true, false, false), "--unit 1in --up z"),
+        (walker(0.1, false, true, false), "--unit 1mm --replace-offsets"),
+    ] {
+        place.write("walk.bvh", text.as_bytes());
+        let said = steps(&[]);
+        assert!(
+            said.err.contains("W0720") || said.err.contains("E0721"),
+            "{wanted}\n{}{}",
+            said.out,
+            said.err
+        );
+        let hint = said.err.split("help: write `").nth(1).and_then(|rest| rest.split('`').next());
+        assert_eq!(hint, Some(wanted), "{}", said.err);
+        let followed = steps(&wanted.split(' ').collect::<Vec<_>>());
+        assert_eq!((followed.code, followed.err.as_str()), (Some(0), ""), "{wanted}");
+        let pairs = lengths(&followed.out).into_iter().zip(lengths(&right.out));
+        assert_eq!(pairs.clone().count(), lengths(&right.out).len());
+        assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 2e-3), "{wanted}\n{}", followed.out);
+    }
+}
+
+#[test]
+fn a_skeleton_states_its_unit_and_is_checked_first() {
+    let asf = CASES[1].1;
+    let place = Place::new(&CASES);
+    let mean =
+        |said: &str| said.lines().last().unwrap().split_whitespace().nth(2).unwrap().parse::<f64>().unwrap();
+    let usual = place.call(&["gait", "steps", "walker_01.amc", "--fps", "30"]);
+    assert_eq!((usual.code, usual.err.as_str()), (Some(0), ""), "{}", usual.err);
+    let write = |length: &str, axis: &str| {
+        let text = asf.replacen("length 0.45", &format!("length {length}"), 1);
+        place.write("walker.asf", text.replacen("axis XYZ", &format!("axis {axis}"), 1).as_bytes());
+        place.call(&["gait", "steps", "walker_01.amc", "--fps", "30"])
+    };
+    let same = write("0.45", "XYZ");
+    assert_eq!((same.out, same.err), (usual.out.clone(), String::new()));
+    let other = write("0.9", "ZYX");
+    assert!((mean(&other.out) / mean(&usual.out) - 0.5).abs() < 0.01, "{}{}", other.out, other.err);
+    assert!(other.err.contains("help: write `--unit 0.0564m`"), "{}", other.err);
+    for (length, axis, said) in [
+        ("0", "XYZ", "the unit of length must be positive"),
+        ("0.45", "XXQ", "`axis` needs an order of the three axes"),
+        ("0.45", "XYX", "`axis` needs an order of the three axes"),
+    ] {
+        let found = write(length, axis);
+        assert!(found.code == Some(2) && found.err.contains(said), "{}", found.err);
+    }
+    let many: String =
+        (0..50_000).fold(":bonedata\n".to_owned(), |text, k| text + &format!("begin\nname b{k}\nend\n"));
+    place.write("walker.asf", many.as_bytes());
+    let found = place.call(&["gait", "steps", "walker_01.amc", "--fps", "30"]);
+    assert!(found.code == Some(2) && found.err.contains("at most 1000 bones"), "{}", found.err);
+    place.write("alone.amc", b"1\nroot 0 0 0 0 0 0\n");
+    let found = place.call(&["gait", "steps", "alone.amc"]);
+    assert_eq!(found.err.matches("alone.asf").count(), 1, "{}", found.err);
+}
+
+#[test]
+fn one_missing_rate_is_one_error() {
+    let place = Place::new(&[("walks.csv", &walks(60, 8))]);
+    let found = place.call(&["gait", "steps", "walks.csv"]);
+    assert_eq!((found.code, found.err.matches("E0720").count()), (Some(2), 1), "{}", found.err);
+    assert!(
+        found.err.contains("the file has no frame rate") && found.err.contains("help: write `--fps 30`"),
+        "{}",
+        found.err
+    );
+    assert!(found.err.contains("  | ^^^^\n"), "{}", found.err);
+    assert_eq!(place.call(&["gait", "steps", "walks.csv", "--fps", "60"]).code, Some(0));
 }

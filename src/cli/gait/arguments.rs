@@ -1,7 +1,7 @@
 //! The options of `smc gait`.
 
 use crate::cli::values::TextFormat;
-use crate::data::mocap::{Layout, Up, bvh_preset};
+use crate::data::mocap::{Asf, Layout, Up, bvh_preset};
 use crate::gait::model::Residuals;
 use crate::gait::steps::Contact;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -57,6 +57,9 @@ pub(in crate::cli) struct Reading {
     /// Position channels of BVH joints replace their offsets instead of being added to them.
     #[arg(long)]
     pub(super) replace_offsets: bool,
+    /// Angles are in radians, not in degrees.
+    #[arg(long)]
+    pub(super) radians: bool,
     /// Rule for contact of a foot with the ground: its speed, or the adaptive thresholds of Agethen et al. (2018).
     #[arg(long, value_name = "RULE", default_value = "rest", value_parser = choice(Contact::NAMES))]
     pub(super) contact: Contact,
@@ -69,9 +72,10 @@ pub(in crate::cli) struct Reading {
 }
 
 impl Reading {
-    /// The layout of a file with its text; none if that of the file's own joints or extension is meant.
-    pub(super) fn layout(&self, file: &str, text: &str) -> Option<Layout> {
-        let preset = || bvh_preset(text).or_else(|| Layout::of_file(file).map(|(_, layout)| layout));
+    /// The layout of a file with its text, and whether it is that of the file's own joints or extension.
+    pub(super) fn layout(&self, file: &str, text: &str, skeleton: Option<&Asf>) -> Option<(Layout, bool)> {
+        let preset =
+            || bvh_preset(text).or_else(|| Layout::of_file(file, skeleton).map(|(_, layout)| layout));
         let mut layout = self.source.clone().or_else(preset)?;
         let own = layout.clone();
         layout.unit = self.unit.unwrap_or(layout.unit);
@@ -79,10 +83,12 @@ impl Reading {
         layout.fps = self.fps.or(layout.fps);
         layout.skip = self.skip.unwrap_or(layout.skip);
         layout.replace_offsets |= self.replace_offsets;
+        layout.radians |= self.radians;
         layout.root = self.root.clone().unwrap_or(layout.root);
         layout.left = self.left.clone().unwrap_or(layout.left);
         layout.right = self.right.clone().unwrap_or(layout.right);
-        (self.source.is_some() || layout != own).then_some(layout)
+        let is_own = self.source.is_none() && layout == own;
+        Some((layout, is_own))
     }
 }
 

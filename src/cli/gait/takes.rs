@@ -3,10 +3,10 @@
 use super::arguments::Reading;
 use crate::cli::compare_walks::{SHOWN, span};
 use crate::cli::{complaint, inputs};
-use crate::data::mocap::{Asf, Take, TakeRow, read_take_table, read_takes};
+use crate::data::mocap::{Asf, Layout, NO_RATE, Take, TakeRow, Up, read_take_table, read_takes};
 use crate::data::tracks::LineError;
 use crate::gait::RecordedStep;
-use crate::gait::steps::{Cut, Dropped, NoSteps, cut};
+use crate::gait::steps::{Cut, Dropped, NoSteps, cut, doubt};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::decode;
@@ -17,6 +17,9 @@ use std::path::{Path, PathBuf};
 /// What a file must have.
 const HINT: &str = "`smc explain E0720` lists the formats; `--source`, `--unit`, `--up`, `--fps`, `--root`, `--left` and \
                     `--right` say how to read a file";
+
+/// What a file without a frame rate needs.
+const RATE_HINT: &str = "write `--fps 30`, with the number of the recording";
 
 /// What the files of a call have, and what is wrong with them.
 #[derive(Default)]
@@ -99,7 +102,8 @@ impl Takes {
     /// Reports errors of a text.
     fn refuse(&mut self, source: Source, errors: &[LineError]) {
         let one = |error: &LineError| {
-            Diagnostic::error(Code::E0720, span(&source, error), error.message.clone()).hint(HINT)
+            let hint = if error.message.contains(NO_RATE) { RATE_HINT } else { HINT };
+            Diagnostic::error(Code::E0720, span(&source, error), error.message.clone()).hint(hint)
         };
         self.found.extend(errors.iter().take(SHOWN).map(one));
         if let Some(more) = errors.len().checked_sub(SHOWN + 1) {
@@ -144,9 +148,20 @@ impl Takes {
         } else {
             None
         };
-        let layout = reading.layout(file, &source.text);
-        match read_takes(file, &source.text, skeleton.as_ref(), layout.as_ref(), rows) {
-            Ok(takes) => self.cut(reading, file, source, takes),
+        let layout = reading.layout(file, &source.text, skeleton.as_ref());
+        let text = source.text.clone();
+        let read = |layout: Option<&Layout>| read_takes(file, &text, skeleton.as_ref(), layout, rows);
+        match read(layout.as_ref().filter(|(_, is_own)| !is_own).map(|(layout, _)| layout)) {
+            Ok(takes) => {
+                let is_right = |layout: &Layout, k: usize| {
+                    let takes = read(Some(layout)).unwrap_or_default();
+                    let cut = takes.get(k).map(|take| (take, cut(take, reading.contact)));
+                    cut.is_some_and(|(take, cut)| cut.is_ok() && doubt(take, &cut).is_none())
+                };
+                let cure =
+                    |k| layout.as_ref().and_then(|(layout, _)| cure(layout, &|layout| is_right(layout, k)));
+                self.cut(reading, file, source, takes, &cure);
+            }
             Err(errors) => self.refuse(source, &errors),
         }
     }
@@ -157,8 +172,13 @@ impl Takes {
         let subject = stem.rsplit_once('_').map_or(stem.as_str(), |(subject, _)| subject).to_owned();
         let paths = [stem, subject].map(|name| Path::new(file).with_file_name(name + ".asf"));
         let Some(path) = paths.iter().find(|path| path.is_file()) else {
-            let [a, b] = paths.each_ref().map(|path| path.display());
-            let message = format!("the skeleton of this motion is missing: neither `{a}` nor `{b}` exists");
+            let [a, b] = paths.each_ref().map(|path| path.display().to_string());
+            let lacks = if a == b {
+                format!("`{a}` does not exist")
+            } else {
+                format!("neither `{a}` nor `{b}` exists")
+            };
+            let message = format!("the skeleton of this motion is missing: {lacks}");
             self.refuse(motion.clone(), &[LineError::of_file(message)]);
             return None;
         };
@@ -173,14 +193,22 @@ impl Takes {
     }
 
     /// Cuts takes into steps. A take without a subject gets that of its file: its name without a number at its end.
-    fn cut(&mut self, reading: &Reading, file: &str, source: Source, takes: Vec<Take>) {
+    /// `cure` finds the options with which a take is one of a person.
+    fn cut(
+        &mut self,
+        reading: &Reading,
+        file: &str,
+        source: Source,
+        takes: Vec<Take>,
+        cure: &dyn Fn(usize) -> Option<String>,
+    ) {
         let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
         let numbered = |(name, number): &(&str, &str)| {
             !name.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
         };
         let subject = stem.rsplit_once('_').filter(numbered).map_or(&*stem, |(subject, _)| subject);
-        let mut told = false;
-        for mut take in takes {
+        let (mut told, mut cured) = (false, None);
+        for (k, mut take) in takes.into_iter().enumerate() {
             if take.subject.is_empty() {
                 subject.clone_into(&mut take.subject);
             }
@@ -197,8 +225,18 @@ impl Takes {
                 take.name = whole;
             }
             let cut = cut(&take, reading.contact);
-            if let Some(found) = doubt(&cut, &take.name, span(&source, &LineError::of_file(""))) {
-                self.found.push(found);
+            let place = span(&source, &LineError::of_file(""));
+            let said = doubt(&take, &cut);
+            if said.is_some() || cut.is_err() {
+                // The takes of a file are alike, and reading it often takes time.
+                let cured = cured.get_or_insert_with(|| cure(k));
+                self.found.push(strange(&cut, &take.name, said, cured.as_deref(), place));
+                told = true;
+            } else if let Some(long) = cut.as_ref().ok().and_then(|cut| cut.dropped.get(&Dropped::Long)) {
+                let title =
+                    format!("{long} steps of take `{}` are dropped: they are longer than 2 m", take.name);
+                let warning = Diagnostic::warning(Code::W0720, place, title);
+                self.found.push(warning.hint("check the unit: `--unit 1cm`"));
                 told = true;
             }
             self.cuts.push(cut);
@@ -241,28 +279,55 @@ impl Takes {
     }
 }
 
-/// What is strange about the steps of a take: a wrong unit is an error where it leaves none, else a warning.
-fn doubt(cut: &Result<Cut, NoSteps>, name: &str, place: Span) -> Option<Diagnostic> {
-    match cut {
-        Err(none) => {
-            let code = if none.unit.is_some() { Code::E0721 } else { Code::W0720 };
-            let found = Diagnostic::error(code, place, none.to_string());
-            let severity = if none.unit.is_some() { Severity::Error } else { Severity::Warning };
-            let hint = match none.unit {
-                Some(_) => "write `--unit` with the length of one unit of the file, such as `--unit 1cm`",
-                None => "remove the take, or check the names of the joints and `--contact`",
-            };
-            Some(Diagnostic { severity, ..found.hint(hint) })
+/// A take without steps, or one that no person makes. It is an error if it has none because the file is read wrongly.
+fn strange(
+    cut: &Result<Cut, NoSteps>,
+    name: &str,
+    said: Option<String>,
+    cure: Option<&str>,
+    place: Span,
+) -> Diagnostic {
+    let is_misread = said.is_some() || cure.is_some();
+    let said = said.map_or_else(String::new, |said| format!(": {said}"));
+    let found = match cut {
+        Err(none) if is_misread => Diagnostic::error(Code::E0721, place, format!("{none}{said}")),
+        Err(none) => Diagnostic::warning(Code::W0720, place, none.to_string()),
+        Ok(_) => Diagnostic::warning(Code::W0720, place, format!("take `{name}` is not plausible{said}")),
+    };
+    found.hint(match cure {
+        Some(cure) => format!("write `{cure}`"),
+        None if is_misread => {
+            "check the unit (`--unit 1cm`), the axis that points up (`--up z`) and the joints".to_owned()
         }
-        Ok(cut) => {
-            let long = cut.dropped.get(&Dropped::Long).copied().unwrap_or_default();
-            let unit = cut.unit.map_or_else(String::new, |unit| format!(": {unit}"));
-            let title = match (long, cut.unit) {
-                (0, None) => return None,
-                (0, Some(_)) => format!("take `{name}` has long steps{unit}"),
-                _ => format!("{long} steps of take `{name}` are dropped: they are longer than 2 m{unit}"),
-            };
-            Some(Diagnostic::warning(Code::W0720, place, title).hint("check the unit: `--unit 1cm`"))
-        }
-    }
+        None => "remove the take, or check the names of the joints and `--contact`".to_owned(),
+    })
+}
+
+/// Options that change how a file is read, and what they change.
+const CHANGES: [(&str, fn(&mut Layout)); 10] = [
+    ("--unit 1mm", |layout| layout.unit = 0.001),
+    ("--unit 1cm", |layout| layout.unit = 0.01),
+    ("--unit 1in", |layout| layout.unit = 0.0254),
+    ("--unit 0.0564m", |layout| layout.unit = 0.0564),
+    ("--unit 1ft", |layout| layout.unit = 0.3048),
+    ("--unit 1m", |layout| layout.unit = 1.0),
+    ("--up z", |layout| layout.up = Up::Z),
+    ("--up y", |layout| layout.up = Up::Y),
+    ("--replace-offsets", |layout| layout.replace_offsets = true),
+    ("--radians", |layout| layout.radians = true),
+];
+
+/// The fewest options, at most two, with which a file is read rightly.
+fn cure(layout: &Layout, is_right: &dyn Fn(&Layout) -> bool) -> Option<String> {
+    let single = CHANGES.iter().map(|one| vec![one]);
+    let pairs = CHANGES.iter().enumerate().flat_map(|(k, one)| {
+        let others = CHANGES[k + 1..].iter().filter(|other| other.0[..4] != one.0[..4]);
+        others.map(move |other| vec![one, other])
+    });
+    let mut tries = single.chain(pairs).filter(|changes| {
+        let mut changed = layout.clone();
+        changes.iter().for_each(|(_, change)| change(&mut changed));
+        changed != *layout && is_right(&changed)
+    });
+    Some(tries.next()?.iter().map(|(option, _)| *option).collect::<Vec<_>>().join(" "))
 }

@@ -27,8 +27,9 @@ pub(super) fn read_amc(asf: &Asf, text: &str, layout: &Layout) -> Result<Frames,
         if let Some(bone) = (0..names.len()).find(lacks) {
             errors.push(LineError::whole(line, format!("frame {frame} lacks {}", quoted(names[bone]))));
         }
-        let places =
-            chains.each_ref().map(|chain| end(chain.iter().map(|&at| asf.bones[at].link(&values[at]))));
+        let places = chains
+            .each_ref()
+            .map(|chain| end(chain.iter().map(|&at| asf.bones[at].link(&values[at], layout))));
         frames.places.push((line, places));
         values.iter_mut().for_each(Vec::clear);
     };
@@ -36,7 +37,7 @@ pub(super) fn read_amc(asf: &Asf, text: &str, layout: &Layout) -> Result<Frames,
         let mut rest = fields(line);
         let Some((column, key)) = rest.next() else { continue };
         if key.starts_with(['#', ':']) {
-            if key.eq_ignore_ascii_case(":radians") {
+            if key.eq_ignore_ascii_case(":radians") && !layout.radians {
                 errors.push(LineError::at(k + 1, column, "angles must be in degrees (`:DEGREES`)"));
             }
         } else if let Ok(frame) = key.parse::<u64>() {

@@ -38,9 +38,9 @@ pub(super) fn read_bvh(text: &str, layout: Option<&Layout>) -> Result<(Frames, L
         match numbers(k + 1, columns, "a frame", fields(line)) {
             Err(error) => errors.push(error),
             Ok(values) => {
-                let places = chains.each_ref().map(|chain| {
-                    end(chain.iter().map(|&at| link(&joints[at], &values, layout.replace_offsets)))
-                });
+                let places = chains
+                    .each_ref()
+                    .map(|chain| end(chain.iter().map(|&at| link(&joints[at], &values, &layout))));
                 frames.places.push((k + 1, places));
             }
         }
@@ -63,11 +63,11 @@ pub fn bvh_preset(text: &str) -> Option<Layout> {
     preset(&joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>())
 }
 
-fn link(joint: &Joint, values: &[f64], replace: bool) -> (Vector3<f64>, Matrix3<f64>, Vector3<f64>) {
+fn link(joint: &Joint, values: &[f64], layout: &Layout) -> (Vector3<f64>, Matrix3<f64>, Vector3<f64>) {
     let values = values[joint.first..].iter().copied();
-    let (shift, rotation) = motion(joint.channels.iter().copied().zip(values));
+    let (shift, rotation) = motion(joint.channels.iter().copied().zip(values).map(|one| layout.degrees(one)));
     let before = match shift {
-        Some(shift) if replace => shift,
+        Some(shift) if layout.replace_offsets => shift,
         shift => joint.offset + shift.unwrap_or_default(),
     };
     (before, rotation, Vector3::zeros())

@@ -1,7 +1,11 @@
 //! Layout: the names of the joints, the unit and the axes of a data set.
 
+use super::asf::Asf;
+use super::pose::Channel;
 use crate::data::tracks::LineError;
 use crate::data::tracks::line::quoted;
+
+const INCH: f64 = 0.0254;
 
 /// The axis that points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +30,8 @@ pub struct Layout {
     pub skip: usize,
     /// Whether the position channels of a BVH joint replace its offset; else they are added to it.
     pub replace_offsets: bool,
+    /// Whether angles are in radians, not in degrees.
+    pub radians: bool,
     /// The center of the hip.
     pub root: String,
     /// The left ankle and toe.
@@ -40,15 +46,22 @@ impl Layout {
         Self::presets().into_iter().find(|(preset, _)| *preset == name).map(|(_, layout)| layout)
     }
 
-    /// The preset of the format that the extension of a file says, and its name.
-    pub fn of_file(file: &str) -> Option<(&'static str, Self)> {
+    /// The preset of the format that the extension of a file says, and its name; with a skeleton in its unit.
+    pub fn of_file(file: &str, skeleton: Option<&Asf>) -> Option<(&'static str, Self)> {
         let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
         let name = match extension.as_str() {
             "amc" => "cmu-asfamc",
             "csv" | "bvh" => extension.as_str(),
             _ => return None,
         };
-        Self::presets().into_iter().find(|(preset, _)| *preset == name)
+        let (preset, layout) = Self::presets().into_iter().find(|(preset, _)| *preset == name)?;
+        Some((preset, Self { unit: skeleton.map_or(layout.unit, |asf| INCH / asf.unit), ..layout }))
+    }
+
+    /// A value of a channel in the unit of the file, in degrees if it is an angle.
+    pub(super) fn degrees(&self, (channel, value): (Channel, f64)) -> (Channel, f64) {
+        let is_radian = self.radians && matches!(channel, Channel::Turn(_));
+        (channel, if is_radian { value.to_degrees() } else { value })
     }
 
     /// The presets: the CMU data set as ASF/AMC and as BVH of the cgspeed release (its first frame is an artificial pose), the
@@ -61,12 +74,13 @@ impl Layout {
             fps: None,
             skip: 0,
             replace_offsets: false,
+            radians: false,
             root: root.to_owned(),
             left: left.map(str::to_owned),
             right: right.map(str::to_owned),
         };
         // The unit of ASF is an inch divided by the `length` of the skeletons.
-        let asf = of(0.0254 / 0.45, "root", ["ltibia", "ltoes"], ["rtibia", "rtoes"]);
+        let asf = of(INCH / 0.45, "root", ["ltibia", "ltoes"], ["rtibia", "rtoes"]);
         let bvh = of(0.01, "Hips", ["LeftFoot", "LeftToeBase"], ["RightFoot", "RightToeBase"]);
         let cmu = of(0.01, "hip", ["lFoot", "lFoot.end"], ["rFoot", "rFoot.end"]);
         let bandai = of(0.01, "Hips", ["Foot_L", "Toes_L"], ["Foot_R", "Toes_R"]);

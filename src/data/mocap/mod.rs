@@ -20,5 +20,5 @@ pub use asf::Asf;
 pub use bvh::bvh_preset;
 pub use layout::{Layout, Up};
 pub use read::read_takes;
-pub use take::{FootTrack, Take};
+pub use take::{FootTrack, NO_RATE, Take};
 pub use takes::{TakeRow, read_take_table};

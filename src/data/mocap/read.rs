@@ -5,7 +5,7 @@ use super::asf::Asf;
 use super::bvh::read_bvh;
 use super::layout::{Layout, listed};
 use super::positions::{Clip, read_positions};
-use super::take::Take;
+use super::take::{NO_RATE, Take};
 use super::takes::{TakeRow, stem};
 use crate::data::tracks::LineError;
 use crate::data::tracks::line::quoted;
@@ -24,7 +24,7 @@ pub fn read_takes(
     rows: &[TakeRow],
 ) -> Result<Vec<Take>, Vec<LineError>> {
     let one = |message: String| Err(vec![LineError::of_file(message)]);
-    let Some((preset, own)) = Layout::of_file(file) else {
+    let Some((preset, own)) = Layout::of_file(file, skeleton) else {
         return one(format!("{} has no known extension (.bvh, .amc or .csv)", quoted(file)));
     };
     let layout_or_preset = layout.cloned().unwrap_or(own);
@@ -64,9 +64,9 @@ fn clips(file: &str, text: &str, layout: &Layout, rows: &[TakeRow]) -> Result<Ve
         }
         let name = |clip: &Clip| if clip.name.is_empty() { stem(file).to_owned() } else { clip.name.clone() };
         let take = |clip: &Clip| {
-            let named = |error: LineError| LineError {
-                message: format!("clip {}: {}", quoted(&clip.name), error.message),
-                ..error
+            let named = |error: LineError| match error.message.as_str() {
+                NO_RATE => error,
+                said => LineError { message: format!("clip {}: {said}", quoted(&clip.name)), ..error },
             };
             clip.frames.take(&name(clip), "", None, layout).map_err(named)
         };
@@ -92,6 +92,8 @@ fn collected(takes: impl Iterator<Item = Result<Take, LineError>>) -> Result<Vec
             Err(error) => errors.push(error),
         }
     }
+    // One rate is missing for all.
+    errors.dedup();
     if good.is_empty() && errors.is_empty() {
         errors.push(LineError::of_file("the file has no frames"));
     }

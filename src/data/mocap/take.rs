@@ -24,6 +24,8 @@ pub struct Take {
     pub fps: f64,
     /// The root (the center of the hip) on the floor plane in each frame, m. A left turn seen from above is positive.
     pub root: Vec<Vec2>,
+    /// The height of the root in each frame, m.
+    pub hip: Vec<f64>,
     /// The left and the right foot.
     pub feet: [FootTrack; 2],
 }
@@ -34,6 +36,9 @@ impl Take {
         self.root.len().saturating_sub(1) as f64 / self.fps
     }
 }
+
+/// The error of a file without a frame rate.
+pub const NO_RATE: &str = "the file has no frame rate";
 
 /// The root, left ankle, left toe, right ankle and right toe in one frame, in the axes and units of a file.
 pub(super) type Places = [[f64; 3]; 5];
@@ -62,6 +67,7 @@ impl Frames {
             subject: subject.to_owned(),
             fps,
             root: Vec::new(),
+            hip: Vec::new(),
             feet: Default::default(),
         };
         for (line, places) in self.places.iter().skip(layout.skip) {
@@ -78,6 +84,7 @@ impl Frames {
             }
             let [root, rest @ ..] = places;
             take.root.push(Vec2::new(root[0], root[1]));
+            take.hip.push(root[2]);
             for (foot, track) in take.feet.iter_mut().enumerate() {
                 track.ankle.push(rest[2 * foot]);
                 track.toe.push(rest[2 * foot + 1]);
@@ -101,11 +108,7 @@ impl Frames {
             (Some(fps), _) | (None, Some(fps)) => {
                 format!("the frame rate must lie between 1 and 10000 per second (got {fps})")
             }
-            (None, None) => {
-                "the file has no frame rate; state it, or list the file in a table of takes with \
-                             column `fps`"
-                    .to_owned()
-            }
+            (None, None) => NO_RATE.to_owned(),
         };
         Err(LineError::of_file(message))
     }

@@ -197,7 +197,7 @@ fn faults_have_their_places() {
     has(&first(bvh(&BVH.replacen("Frames: 121", "Frames: 1", 1)[..1200])), "a frame needs");
     let far = first(csv(&CSV.replacen(",0.9000,", ",9e6,", 1)));
     has(&far, "line 2: clip `stand`: a coordinate must lie between -1e6 m and 1e6 m");
-    has(&first(csv(&format!("{header}\n{}", line("a", 0.0)))), "clip `a`: the file has no frame rate");
+    has(&first(csv(&format!("{header}\n{}", line("a", 0.0)))), "the file has no frame rate");
     has(&first(csv(header)), "the file has no frames");
     has(&read_takes("a.txt", "", None, None, &[]).unwrap_err()[0].message, "no known extension");
     has(&Asf::read(AMC).unwrap_err().message, "the file has no bones");

@@ -5,7 +5,7 @@
 
 use super::contact::{Contact, Support};
 use super::landmarks::{frame, root, shape};
-use super::signal::{percentile, speed};
+use super::signal::speed;
 use crate::base::geometry::{Vec2, cross};
 use crate::data::mocap::Take;
 use crate::gait::{Foot, Phase, RecordedStep};
@@ -19,27 +19,6 @@ const STANDING_TIME: f64 = 0.2;
 const LONGEST_TIME: f64 = 2.0;
 /// The shortest and the longest root path of a step, m.
 const LENGTHS: (f64, f64) = (0.05, 2.0);
-/// The distance between ankle and toe of a person, m.
-const FEET: (f64, f64) = (0.05, 0.45);
-/// The usual length of a step, and medians that a take of walking can have, m.
-const USUAL: f64 = 0.7;
-const STEPS: (f64, f64) = (0.3, 1.4);
-/// Other units of length that files have, m, and their inverses.
-const UNITS: [f64; 12] = [
-    0.001,
-    0.01,
-    0.0254,
-    0.0254 / 0.45,
-    0.3048,
-    1.0 / 2.54,
-    2.54,
-    1.0 / 0.3048,
-    0.45 / 0.0254,
-    1.0 / 0.0254,
-    100.0,
-    1000.0,
-];
-
 /// Why a step was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dropped {
@@ -77,54 +56,21 @@ pub struct Cut {
     pub steps: Vec<RecordedStep>,
     /// How many were dropped, by reason.
     pub dropped: BTreeMap<Dropped, usize>,
-    /// The unit that its steps suggest, if most are longer than those of a person.
-    pub unit: Option<WrongUnit>,
-}
-
-/// A length that no person has, in m, and the factor of the unit that makes it that of a person.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WrongUnit {
-    /// The median distance between ankle and toe.
-    Feet(f64, f64),
-    /// The median length of the steps.
-    Steps(f64, f64),
-}
-
-impl fmt::Display for WrongUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let factor = match self {
-            Self::Feet(length, factor) => {
-                write!(f, "its feet are {length:.3} m from ankle to toe")?;
-                factor
-            }
-            Self::Steps(length, factor) => {
-                write!(f, "its steps are {length:.3} m long")?;
-                factor
-            }
-        };
-        write!(f, "; multiply the unit by {factor:.4}")
-    }
 }
 
 /// A take without steps.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("take `{take}` has no steps{}{}", reasons(.dropped), unit_hint(*.unit))]
+#[error("take `{take}` has no steps{}", reasons(.dropped))]
 pub struct NoSteps {
     /// The take.
     pub take: String,
     /// How many were dropped, by reason.
     pub dropped: BTreeMap<Dropped, usize>,
-    /// The unit that its feet or steps suggest, if they are not those of a person.
-    pub unit: Option<WrongUnit>,
 }
 
 fn reasons(dropped: &BTreeMap<Dropped, usize>) -> String {
     let all: Vec<String> = dropped.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
     if all.is_empty() { String::new() } else { format!(" ({})", all.join(", ")) }
-}
-
-fn unit_hint(unit: Option<WrongUnit>) -> String {
-    unit.map_or_else(String::new, |unit| format!(": {unit}"))
 }
 
 /// Cuts a take into steps.
@@ -136,7 +82,6 @@ pub fn cut(take: &Take, contact: Contact) -> Result<Cut, NoSteps> {
     let stands = stands(take, &supports);
     let mut cut = Cut::default();
     let mut number = 0;
-    let mut lengths = Vec::new();
     for (k, pair) in supports.windows(2).enumerate().filter(|(_, pair)| pair[1].seen) {
         let (before, end) = (&pair[0], &pair[1]);
         let next = supports.get(k + 2).map_or(f64::INFINITY, |next| next.from);
@@ -161,9 +106,6 @@ pub fn cut(take: &Take, contact: Contact) -> Result<Cut, NoSteps> {
         };
         // A number that is left out says that the step before it is not the one that led to it.
         number += u32::from(phase == Phase::First && number > 0);
-        if matches!(reason, None | Some(Dropped::Long)) {
-            lengths.push(length);
-        }
         if let Some(reason) = reason {
             *cut.dropped.entry(reason).or_default() += 1;
         } else {
@@ -173,10 +115,8 @@ pub fn cut(take: &Take, contact: Contact) -> Result<Cut, NoSteps> {
         }
         number += 1;
     }
-    cut.unit = unit_of_steps(&lengths);
     if cut.steps.is_empty() {
-        let unit = unit_of_feet(take).or(cut.unit);
-        return Err(NoSteps { take: take.name.clone(), dropped: cut.dropped, unit });
+        return Err(NoSteps { take: take.name.clone(), dropped: cut.dropped });
     }
     Ok(cut)
 }
@@ -208,32 +148,4 @@ fn stands(take: &Take, supports: &[Support]) -> Vec<(f64, f64)> {
         .map(|part| (part[0] as f64 / take.fps, part[part.len() - 1] as f64 / take.fps))
         .filter(|(from, to)| to - from >= STANDING_TIME)
         .collect()
-}
-
-/// The unit whose factor brings a length into a range, nearest to a usual one; none if it is there already.
-fn fitting(length: f64, usual: f64, range: (f64, f64)) -> Option<f64> {
-    let off = |factor: &f64| {
-        let ratio = length * factor / usual;
-        if ratio > 1.0 { ratio } else { 1.0 / ratio }
-    };
-    let factor = UNITS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-    let fits = |length: f64| (range.0..range.1).contains(&length);
-    (!fits(length) && fits(length * factor)).then_some(factor)
-}
-
-fn unit_of_feet(take: &Take) -> Option<WrongUnit> {
-    let lengths = take
-        .feet
-        .iter()
-        .flat_map(|foot| foot.ankle.iter().zip(&foot.toe))
-        .map(|(a, t)| (0..3).map(|k| (a[k] - t[k]) * (a[k] - t[k])).sum::<f64>().sqrt());
-    let foot = percentile(&lengths.collect::<Vec<f64>>(), 0.5);
-    Some(WrongUnit::Feet(foot, fitting(foot, (FEET.0 * FEET.1).sqrt(), FEET)?))
-}
-
-/// Short steps may be those of a slow walk; only long ones say something.
-fn unit_of_steps(lengths: &[f64]) -> Option<WrongUnit> {
-    let step = percentile(lengths, 0.5);
-    let factor = fitting(step, USUAL, STEPS).filter(|factor| *factor < 1.0)?;
-    Some(WrongUnit::Steps(step, factor))
 }

@@ -4,6 +4,7 @@
 mod contact;
 mod cut;
 mod landmarks;
+mod plausible;
 mod report;
 mod signal;
 
@@ -12,6 +13,7 @@ mod signal;
 mod tests;
 
 pub use contact::Contact;
-pub use cut::{Cut, Dropped, NoSteps, WrongUnit, cut};
+pub use cut::{Cut, Dropped, NoSteps, cut};
+pub use plausible::doubt;
 pub(in crate::gait) use report::measures;
 pub use report::{report, write_drawn_steps, write_steps};

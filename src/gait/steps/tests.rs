@@ -82,23 +82,36 @@ fn a_walk_from_standing_to_standing_has_a_first_and_a_last_step() {
 #[test]
 fn a_wrong_unit_is_recognised() {
     let mut take = takes().remove(0);
+    assert_eq!(doubt(&take, &cut(&take, Contact::Rest)), None);
     take.root.iter_mut().for_each(|p| *p *= 100.0);
+    take.hip.iter_mut().for_each(|height| *height *= 100.0);
     for p in take.feet.iter_mut().flat_map(|foot| foot.ankle.iter_mut().chain(&mut foot.toe)) {
         *p = p.map(|x| x * 100.0);
     }
     let none = cut(&take, Contact::Rest).unwrap_err();
     assert_eq!(
         none.to_string(),
-        "take `circle` has no steps (1 began before the take, 6 are longer than 2 m): its feet are 13.000 m from ankle to toe; multiply the unit by 0.0100"
+        "take `circle` has no steps (1 began before the take, 6 are longer than 2 m)"
     );
+    let said = doubt(&take, &Err(none)).unwrap();
+    assert!(said.starts_with("its hip is 8") && said.ends_with(" m high (0.7 to 1.2 m are usual)"), "{said}");
+    let mut low = take.clone();
+    low.hip.iter_mut().for_each(|height| *height = 0.9);
+    for p in low.feet.iter_mut().flat_map(|foot| &mut foot.ankle) {
+        p[2] = 0.0;
+    }
+    let said = doubt(&low, &cut(&low, Contact::Rest)).unwrap();
+    assert!(said.starts_with("its feet are 1"), "{said}");
     let none = cut(&take, Contact::Adaptive).unwrap_err();
     assert!(none.dropped.get(&Dropped::Long).is_some_and(|count| *count > 3), "{none}");
     // Somebody who stands has feet of the right size, and makes no steps.
     let places = vec![[0.0, 0.1, 0.08]; 50];
     let foot = FootTrack { toe: vec![[0.12, 0.1, 0.03]; 50], ankle: places };
     let still = Take { root: vec![Vec2::zeros(); 50], feet: [foot.clone(), foot], ..take };
+    let still = Take { hip: vec![0.9; 50], ..still };
     let none = cut(&still, Contact::Adaptive).unwrap_err();
-    assert_eq!((none.unit, none.to_string()), (None, "take `circle` has no steps".to_owned()));
+    assert_eq!(none.to_string(), "take `circle` has no steps");
+    assert_eq!(doubt(&still, &Err(none)), None);
     assert!(cut(&still, Contact::Rest).is_err());
 }
 
