@@ -32,22 +32,19 @@
 //! drive agents by rules of their own. The modules below are for those who need more; their items may change.
 
 pub mod advise;
-pub mod base;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compile;
 pub mod data;
 pub mod engine;
 pub mod gait;
-pub mod kernel;
 pub mod library;
-pub mod logic;
-pub mod model;
 pub mod perception;
 pub mod replay;
 pub mod report;
 pub mod route;
-pub mod stats;
 pub mod syntax;
+
+pub use smc_core::{base, kernel, logic, model, stats};
 
 pub use library::{AgentState, Diagnostics, Draft, Model, Options, Report, Snapshot, Trial};

@@ -258,7 +258,9 @@ mod tests {
             let (a, b) = (x[1] - x[0] * x[0], 1.0 - x[0]);
             100.0 * a * a + b * b
         };
-        for (loss, start, theirs) in [(ellipsoid, &[1.0, 1.0, 1.0][..], 889.0), (rosenbrock, &[-1.0, 1.0], 762.0)] {
+        for (loss, start, theirs) in
+            [(ellipsoid, &[1.0, 1.0, 1.0][..], 889.0), (rosenbrock, &[-1.0, 1.0], 762.0)]
+        {
             let mut all: Vec<usize> = (0..21).map(|seed| evaluations(loss, start, seed, 5000)).collect();
             all.sort_unstable();
             let ours = all[all.len() / 2] as f64;

@@ -10,7 +10,7 @@ mod sweep;
 
 pub use clearing::clearing;
 pub use nearby::{Nearby, amply_around};
-pub(crate) use polygon::meeting_edges;
+pub use polygon::meeting_edges;
 pub use polygon::{HoleFault, Polygon};
 pub use segment::Segment;
 pub use shape::{Bounds, Shape};

@@ -66,7 +66,7 @@ fn rings_cross(first: &[Vec2], second: &[Vec2]) -> bool {
 }
 
 /// Two edges of a ring that meet and are no neighbours, which share a corner, by their numbers.
-pub(crate) fn meeting_edges(ring: &[Vec2]) -> Option<(usize, usize)> {
+pub fn meeting_edges(ring: &[Vec2]) -> Option<(usize, usize)> {
     let edges: Vec<Segment> = ring_segments(ring).collect();
     let n = edges.len();
     let neighbours = |i: usize, j: usize| (i + 1) % n == j || (j + 1) % n == i;

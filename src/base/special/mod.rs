@@ -53,7 +53,7 @@ impl Tails {
 
 /// `ln(1 + t) - t` without cancellation, where `ratio` is 1 + t (which may be more accurate than t near
 /// t = -1).
-pub(crate) fn ln_1p_less(t: f64, ratio: f64) -> f64 {
+pub fn ln_1p_less(t: f64, ratio: f64) -> f64 {
     if t.abs() > 0.4 {
         return math::ln(ratio) - t;
     }

@@ -75,13 +75,13 @@ enum Form {
 
 /// A region or barrier.
 #[derive(Clone, Debug)]
-pub(crate) struct Ground {
+pub struct Ground {
     form: Form,
     bounds: Option<Bounds>,
 }
 
 /// The upright rectangle that a polygon is, if it is one.
-pub(crate) fn upright(polygon: &Polygon) -> Option<Bounds> {
+pub fn upright(polygon: &Polygon) -> Option<Bounds> {
     let [a, b, c, d] = *polygon.outline.as_slice() else { return None };
     let flat = |p: Vec2, q: Vec2| p.y == q.y;
     let steep = |p: Vec2, q: Vec2| p.x == q.x;
@@ -92,7 +92,7 @@ pub(crate) fn upright(polygon: &Polygon) -> Option<Bounds> {
 
 impl Ground {
     /// The middle of its bounds; none of a wall without pieces.
-    pub(crate) fn middle(&self) -> Option<Vec2> {
+    pub fn middle(&self) -> Option<Vec2> {
         self.bounds.map(|bounds| 0.5 * (bounds.low + bounds.high))
     }
 
@@ -105,7 +105,7 @@ impl Ground {
     }
 
     /// A region.
-    pub(crate) fn region(shape: &Shape) -> Self {
+    pub fn region(shape: &Shape) -> Self {
         let form = match shape {
             Shape::Circle { centre, radius } => Form::Disc { centre: *centre, radius: *radius },
             Shape::Polygon(polygon) => match upright(polygon) {
@@ -137,7 +137,7 @@ impl Ground {
 
     /// The lanes whose point is inside or on the rim.
     #[inline(always)]
-    pub(crate) fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
+    pub fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
         match &self.form {
             Form::Rectangle(Bounds { low, high }) => {
                 x.simd_ge(Vector::splat(x.simd, low.x))
@@ -158,7 +158,7 @@ impl Ground {
 
     /// The way from a point to the nearest point of the rim of a region with edges; zero for others.
     #[inline(always)]
-    pub(crate) fn way_to_rim<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
+    pub fn way_to_rim<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
         let zero = Vector::splat(x.simd, 0.0);
         let mut best = (Vector::splat(x.simd, f64::INFINITY), zero, zero);
         if let Form::Polygon { edges, .. } | Form::Wall(edges) = &self.form {

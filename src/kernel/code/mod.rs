@@ -11,7 +11,7 @@
 mod arithmetic;
 mod barriers;
 mod crowd;
-pub(crate) mod ground;
+pub mod ground;
 pub(crate) mod lanes;
 mod lists;
 mod lower;
