@@ -8,7 +8,7 @@ use smc::library::{Folder, Names, parse};
 use smc::model::Scenario;
 use smc::replay::{
     Beyond, CONSTANT, Displacement, Evaluating, FEATURES, LANGEVIN, PREDICTED, PersonRealism, Predicted,
-    Replay, Whose, eligible, evaluate, realism,
+    Replay, Whose, eligible, evaluate, monitor, realism,
 };
 use smc::route::Ways;
 use std::fmt::Write as _;
@@ -89,16 +89,17 @@ fn of_recording(
     };
     let replay = Replay::new(&parsed.input(), name, velocity, Whose::Everybody).map_err(refused)?;
     let all = replay.instants(EVERY, (f64::NEG_INFINITY, f64::INFINITY));
-    let instants = eligible(&replay, all, EVERY, MOVING, PREDICTED);
+    let instants = eligible(&replay, all, MOVING, PREDICTED);
     let threads = Threads::new(None)?;
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
-    let options = Evaluating { trials, seed: 0, beyond: Beyond::Onward };
+    let judged = monitor(&replay, &instants, Beyond::Onward, &threads).map_err(refused)?;
+    let options = Evaluating { trials, seed: 0 };
     let mut out = String::new();
     for kind in PRESETS.iter().map(|preset| preset.name).chain([CONSTANT, LANGEVIN]) {
         eprintln!("{name} {} {kind}", velocity.name());
-        let found = evaluate(&replay, kind, &instants, &options, (&threads, &drivers)).map_err(refused)?;
-        let real = realism(&replay, kind, &instants, options.seed, (&threads, &drivers)).map_err(refused)?;
+        let found = evaluate(&replay, kind, &judged, &options, (&threads, &drivers)).map_err(refused)?;
+        let real = realism(&replay, kind, &judged, options.seed, (&threads, &drivers)).map_err(refused)?;
         writeln!(
             out,
             "| {name}, {} | {kind} | {} | {} |",

@@ -62,6 +62,7 @@ impl Elaborator<'_> {
     /// The smallest and the largest value that a number can have.
     fn reach(&self, num: &Num) -> (f64, f64) {
         match num {
+            Num::Constant(value) => (*value, *value),
             Num::Variable(variable) => match self.domain(*variable).and_then(Domain::values) {
                 Some((low, count)) => (low, low + (count - 1) as f64),
                 None => UNKNOWN,

@@ -14,7 +14,7 @@ fn options_with_numbers_speak_of_numbers() {
     for (words, wanted) in [
         ("check a.scn a.bltl --seed -1", "`-1` is not a whole number"),
         ("check a.scn a.bltl --seed 1.5", "`1.5` is not a whole number"),
-        ("check a.scn a.bltl -j many", "`many` is not a whole number"),
+        ("check a.scn a.bltl -j many", "must be a whole number from 0 (got `many`)"),
         ("check a.scn a.bltl --shards 0", "must be a whole number from 1 to 4294967295 (got `0`)"),
         ("walk a.scn -n -3", "`-3` is not a whole number"),
         ("simulate a.scn --every x", "`x` is not a whole number"),

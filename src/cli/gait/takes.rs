@@ -303,8 +303,10 @@ fn strange(
     })
 }
 
-/// Options that change how a file is read, and what they change.
-const CHANGES: [(&str, fn(&mut Layout)); 10] = [
+/// An option that changes how a file is read.
+type Change = (&'static str, fn(&mut Layout));
+
+const CHANGES: [Change; 10] = [
     ("--unit 1mm", |layout| layout.unit = 0.001),
     ("--unit 1cm", |layout| layout.unit = 0.01),
     ("--unit 1in", |layout| layout.unit = 0.0254),
@@ -326,7 +328,9 @@ fn cure(layout: &Layout, is_right: &dyn Fn(&Layout) -> bool) -> Option<String> {
     });
     let mut tries = single.chain(pairs).filter(|changes| {
         let mut changed = layout.clone();
-        changes.iter().for_each(|(_, change)| change(&mut changed));
+        for (_, change) in changes {
+            change(&mut changed);
+        }
         changed != *layout && is_right(&changed)
     });
     Some(tries.next()?.iter().map(|(option, _)| *option).collect::<Vec<_>>().join(" "))

@@ -178,6 +178,7 @@ fn read_row(
 
 #[cfg(test)]
 mod tests {
+    use super::super::format::{Format, Reading};
     use super::super::recording::Velocity;
     use super::*;
 
@@ -292,7 +293,6 @@ mod tests {
             "TIME\tAgent\tx\ty\n0\t1\t0.5\t2\n0.4\t1\t1\t2.5\n",
         ] {
             assert_eq!(read_csv(text, None, None).unwrap(), wanted, "{text}");
-            use super::super::format::{Format, Reading};
             let marked = format!("\u{feff}{text}");
             let format = Format::of(&marked).unwrap();
             assert_eq!(

@@ -78,8 +78,8 @@ pub struct LearnedGait {
 const LARGEST: f64 = 1e12;
 
 /// Whether a number can be a variance or a unit.
-fn is_positive(value: &f64) -> bool {
-    (1e-15..=LARGEST).contains(value)
+fn is_positive(value: f64) -> bool {
+    (1e-15..=LARGEST).contains(&value)
 }
 
 impl LearnedGait {
@@ -93,8 +93,8 @@ impl LearnedGait {
         let basis = |b: &Basis| {
             (1..=COLUMNS).contains(&b.components())
                 && b.spread.len() == b.components()
-                && b.spread.iter().all(is_positive)
-                && b.scale.iter().all(|s| *s == 0.0 || is_positive(s))
+                && b.spread.iter().copied().all(is_positive)
+                && b.scale.iter().all(|s| *s == 0.0 || is_positive(*s))
         };
         let side = |s: &Side, here: usize, next: usize| {
             basis(&s.basis)
@@ -104,7 +104,7 @@ impl LearnedGait {
                 && !s.pairs.residuals.is_empty()
                 && s.pairs.places.len() == s.pairs.residuals.len() * (here + 1)
                 && s.gaussian.len() <= COLUMNS
-                && is_positive(&s.usual)
+                && is_positive(s.usual)
         };
         self.people.loadings.len() <= COLUMNS
             && self.people.within.iter().chain(&self.people.between).all(|v| *v >= 0.0)

@@ -164,8 +164,8 @@ impl Transition {
             Self::Process(p) => {
                 let count = p.points.first().map_or(0, Vec::len);
                 p.lengths.len() == inputs
-                    && p.lengths.iter().all(is_positive)
-                    && is_positive(&p.noise)
+                    && p.lengths.iter().copied().all(is_positive)
+                    && is_positive(p.noise)
                     && p.points.len() == inputs
                     && p.points.iter().all(|list| list.len() == count)
                     && (1..=MOST_POINTS).contains(&count)
@@ -174,13 +174,13 @@ impl Transition {
                     && p.weights.iter().all(|list| list.len() == count)
                     && p.reduction.len() == count * (count / LANES + 1) * LANES / 2
                     && p.signals.len() == outputs
-                    && p.signals.iter().all(is_positive)
+                    && p.signals.iter().copied().all(is_positive)
             }
             Self::Linear(l) => {
                 l.rows.len() == outputs
                     && l.rows.iter().all(|row| row.len() == inputs + 1)
                     && l.variances.len() == outputs
-                    && l.variances.iter().all(is_positive)
+                    && l.variances.iter().copied().all(is_positive)
             }
         }
     }

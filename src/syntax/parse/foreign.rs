@@ -278,7 +278,9 @@ impl<'t> Tokens<'t> {
             Some(b'o') => one(matches!(token, "F" | "G" | "X" | "U" | "W" | "R")),
             Some(b'y') => one(matches!(token, "int" | "double" | "float" | "real" | "bool")),
             Some(b't') if self.is_number(at) => {
-                vec![at + 1 + usize::from(quantity::UNITS.contains(&self.get(at + 1)))]
+                // A name that is set or has a member is no unit, as in the grammar.
+                let is_free = !matches!(self.get(at + 2), "=" | ".");
+                vec![at + 1 + usize::from(is_free && quantity::UNITS.contains(&self.get(at + 1)))]
             }
             Some(b'w') if self.is_name(at) => {
                 let mut end = at + 1;
