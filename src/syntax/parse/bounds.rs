@@ -60,6 +60,12 @@ impl Builder<'_> {
         self.names.get_or_init(|| declared(self.text)).contains_key(word)
     }
 
+    /// Whether a word is the name of a number in this text.
+    pub(super) fn names_a_number(&self, word: &str) -> bool {
+        let names = self.names.get_or_init(|| declared(self.text));
+        matches!(names.get(word), Some(&("const" | "let" | "param")))
+    }
+
     /// `F<=0 s == 3`: the bound took the name for its unit; and `F<5 s p`.
     pub(super) fn slip_of_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let comparison = matches!(fault.found, "==" | "!=" | "<" | "<=" | ">" | ">=" | "≤" | "≥" | "≠");

@@ -78,7 +78,7 @@ impl Builder<'_> {
         }
         if let Some(UnitExpr { factors, span }) = &unit
             && let [UnitFactor { name: Ident { name, .. }, power: 1 }] = factors.as_slice()
-            && self.is_declared(name)
+            && self.names_a_number(name)
             && !self.diagnostics.iter().any(|one| one.code == code::NAME_IS_UNIT)
         {
             let title = format!("`{name}` is read as the unit, but is also a name");
@@ -169,12 +169,15 @@ mod tests {
             (0, "const s = 3\nlet far = 2 m/s"),
             (1, "const s = 3 m\nlet far = 2 s\nlet near = 1 s"),
             (1, "let far = 2 m\nlet m(a) = a + 1"),
+            (0, "property s = F<=9 s true"),
         ] {
             let said = parse_properties(&source(text)).1;
             assert_eq!(count(&said), wanted, "{text}\n{said:?}");
         }
         let scenario = |text: &str| count(&parse_scenario(&source(text)).1);
         assert_eq!(scenario("horizon = 9 steps\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 0);
-        assert_eq!(scenario("horizon = 9 s\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 1);
+        // A member is no unit.
+        assert_eq!(scenario("horizon = 9 s\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 0);
+        assert_eq!(scenario("horizon = 9 s\nstep = 1 s\nparam s = 3"), 1);
     }
 }
