@@ -141,7 +141,9 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Show(command) => Some(command.limit),
         _ => None,
     };
-    limit.into_iter().for_each(|limit| deadline::limit(limit, colors));
+    if let Some(limit) = limit {
+        deadline::limit(limit, colors);
+    }
     match &arguments.command {
         Command::Check(command) => check::run(&command.questions, &Way::Check(command), colors),
         Command::Merge(command) => check::run(&command.questions, &Way::Merge(&command.folder), colors),

@@ -22,7 +22,7 @@ fn options_with_numbers_speak_of_numbers() {
         ("gait score a.bvh --folds 1e9", "must be a whole number from 0 (got `1e9`)"),
         ("infer a.csv --fps fast", "must be a number (got `fast`)"),
         ("evaluate a.scn a.bltl --replay r --speed -", "must be a number (got `-`)"),
-        ("path --shape L3 --profiles -2", "must be a whole number from 0"),
+        ("path --shape L3 --profiles -2", "a whole number from 0 to 10000"),
     ] {
         let said = place.call(&words.split(' ').collect::<Vec<_>>());
         assert_eq!(said.code, Some(2), "{words}");

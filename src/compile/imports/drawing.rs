@@ -111,7 +111,9 @@ impl Elaborator<'_> {
         let mut compared = import.filter.map(filter::compared).unwrap_or_default();
         let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
             total += 1;
-            compared.iter_mut().for_each(|compared| compared.see(properties));
+            for compared in &mut compared {
+                compared.see(properties);
+            }
             strange.retain(|(name, _)| !properties.iter().any(|(known, _)| known == name));
             if known.len() < MOST_NAMES {
                 known.extend(properties.iter().map(|(name, _)| name.clone()));

@@ -114,7 +114,7 @@ pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened
     let (mut openings, mut found) = (Vec::new(), Vec::new());
     for door in doors {
         let pieces = walls.iter().flat_map(|wall| wall.iter());
-        let Some(mut opening) = line(door, pieces) else {
+        let Some(mut opening) = line(door, &pieces) else {
             found.push(Opened::Nothing);
             continue;
         };
@@ -141,7 +141,7 @@ pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened
 
 /// The line of the wall that is nearest to a door, through its point nearest to the door, as far as it goes on without a
 /// gap and without another wall that meets it.
-fn line<'p>(door: &Door, pieces: impl Iterator<Item = &'p Segment> + Clone) -> Option<Opening> {
+fn line<'p, P: Iterator<Item = &'p Segment> + Clone>(door: &Door, pieces: &P) -> Option<Opening> {
     let is_parallel = |piece: &&Segment| {
         door.along.is_none_or(|along| cross(along, piece.b - piece.a).abs() <= SLANT * piece.length())
     };

@@ -119,9 +119,10 @@ impl Placement {
                 let scale = metres_per_degree(middle.y);
                 let centre = 0.5 * (before.low + before.high);
                 let far = |p: Vec2| (p - middle).component_mul(&scale).norm();
-                let is_swapped = match is_degrees(centre) {
-                    true => far(centre.yx()) < FARTHEST && far(centre) > FARTHEST,
-                    false => is_degrees(centre.yx()) && reach(&before) < WIDEST_DEGREES,
+                let is_swapped = if is_degrees(centre) {
+                    far(centre.yx()) < FARTHEST && far(centre) > FARTHEST
+                } else {
+                    is_degrees(centre.yx()) && reach(&before) < WIDEST_DEGREES
                 };
                 if is_swapped {
                     return Err(Fault::Swapped);
