@@ -111,8 +111,15 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
         .iter()
         .map(|p| if p.as_os_str().is_empty() { ".".to_owned() } else { p.display().to_string() })
         .collect();
+    // The folder of a link is searched, not that of the file that it leads to.
+    let target = std::fs::read_link(scenario)
+        .ok()
+        .and_then(|target| Some(beside?.join(target).parent()?.to_path_buf()));
+    let linked = target.filter(|folder| folder.join(path).is_file()).map_or(String::new(), |folder| {
+        format!("; it exists in `{0}`, to which `{scenario}` is a link: add `--data {0}`", folder.display())
+    });
     Err(format!(
-        "the file `{path}` does not exist in {}",
+        "the file `{path}` does not exist in {}{linked}",
         if looked.is_empty() { "any --data directory".to_owned() } else { looked.join(", ") }
     ))
 }

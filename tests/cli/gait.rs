@@ -286,7 +286,7 @@ fn the_hint_about_a_take_of_no_person_gives_the_right_steps() {
         (walker(1.0, true, false, false), "--up z"),
         (walker(1.0, false, true, false), "--replace-offsets"),
         (walker(1.0, false, false, true), "--radians"),
-        (walker(2.54, true, false, false), "--unit 1in --up z"),
+        (walker(2.54, true, false, false), "--up z --unit 1in"),
         (walker(0.1, false, true, false), "--unit 1mm --replace-offsets"),
     ] {
         place.write("walk.bvh", text.as_bytes());

@@ -392,3 +392,17 @@ fn multiples_of_distributions_are_shown_as_they_were_written() {
     let said = place.call(&["show", "b.scn"]);
     assert_eq!((said.code, said.err.matches("error[E0303]").count()), (Some(2), 2), "{}", said.err);
 }
+
+#[cfg(unix)]
+#[test]
+fn the_folder_behind_a_link_is_named() {
+    let scenario = "horizon = 2 s\nstep = 0.05 s\nscene { import \"room.wkt\" as walkable }\n";
+    let place = Place::new(&[("a.bltl", "let a = 1\n")]);
+    std::fs::create_dir(place.path("plans")).unwrap();
+    place.write("plans/room.scn", scenario.as_bytes());
+    place.write("plans/room.wkt", b"POLYGON ((0 0, 9 0, 9 5, 0 5, 0 0))");
+    std::os::unix::fs::symlink("plans/room.scn", place.path("link.scn")).unwrap();
+    let said = place.call(&["check", "link.scn", "a.bltl"]);
+    assert!(said.code == Some(2) && said.err.contains("add `--data plans`"), "{}", said.err);
+    assert_eq!(place.call(&["show", "link.scn", "--data", "plans"]).code, Some(0));
+}

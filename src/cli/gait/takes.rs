@@ -306,15 +306,16 @@ fn strange(
 /// An option that changes how a file is read.
 type Change = (&'static str, fn(&mut Layout));
 
+/// The axes come first: a wrong one and a wrong unit can make the same height of the hip.
 const CHANGES: [Change; 10] = [
+    ("--up z", |layout| layout.up = Up::Z),
+    ("--up y", |layout| layout.up = Up::Y),
     ("--unit 1mm", |layout| layout.unit = 0.001),
     ("--unit 1cm", |layout| layout.unit = 0.01),
     ("--unit 1in", |layout| layout.unit = 0.0254),
     ("--unit 0.0564m", |layout| layout.unit = 0.0564),
     ("--unit 1ft", |layout| layout.unit = 0.3048),
     ("--unit 1m", |layout| layout.unit = 1.0),
-    ("--up z", |layout| layout.up = Up::Z),
-    ("--up y", |layout| layout.up = Up::Y),
     ("--replace-offsets", |layout| layout.replace_offsets = true),
     ("--radians", |layout| layout.radians = true),
 ];
