@@ -294,7 +294,7 @@ fn forecasts_and_formats_know_values_and_routes() {
     assert!(shown.contains("route left (goes (3, 3.4) -> goal)"), "{shown}");
 }
 
-/// Of two options whose joint intervals do not meet, the lower one is beaten, also where the budget cuts the first round.
+/// The lower one of two options whose joint intervals do not meet is beaten, also where the budget cuts the first round.
 #[test]
 fn statuses_follow_the_intervals() {
     let mut beaten = 0;

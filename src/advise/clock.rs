@@ -29,7 +29,7 @@ pub(super) enum Timing {
     Followed,
 }
 
-/// What is known of a sensor.
+/// The state of the clock of a sensor.
 #[derive(Clone, Debug, Default)]
 struct Clock {
     /// Time of the last batch, s, and how many batches of all sensors had come.

@@ -24,7 +24,7 @@ pub struct Cycles {
     is_full: bool,
 }
 
-/// What a batch leads to.
+/// The effect of a batch.
 #[derive(Clone, Debug, Default)]
 pub struct Pushed {
     /// The cycles that are complete now.

@@ -8,7 +8,7 @@ use crate::perception::{ConstantVelocity, Motion, Trace, TracePoint};
 /// Ids of people whose id is unknown begin here, in the order of their traces.
 const UNKNOWN: u32 = 1 << 31;
 
-/// So far beyond the range people are observed, m: whoever comes into it has a trace already.
+/// People are observed so far beyond the range, m: those who come into it have a trace already.
 const MARGIN: f64 = 10.0;
 
 /// The batches without observations far beyond the range of the user, m; `None` where the user's place is unknown.

@@ -68,7 +68,7 @@ pub(super) fn names(filter: &Expr) -> Box<dyn Iterator<Item = (&str, Span)> + '_
 pub(super) struct Compared<'f> {
     pub(super) name: &'f str,
     pub(super) value: PropertyValue,
-    /// Where the value stands, and where the comparison.
+    /// The places of the value and of the comparison.
     pub(super) spans: [Span; 2],
     /// Some values of features.
     pub(super) seen: Vec<PropertyValue>,

@@ -140,7 +140,7 @@ fn has_room(shape: &Shape, radius: f64, barriers: &[Solid<'_>]) -> bool {
 }
 
 impl Elaborator<'_> {
-    /// Moves apart who was seen at the place of somebody else, or was moved to it.
+    /// Moves apart the people who were seen at one place, or were moved to it.
     fn part(&mut self, people: &mut People, barriers: &[Solid<'_>]) {
         let is_seen = |agent: &Agent| !agent.start.seen.is_empty();
         let (seen, given): (Vec<usize>, Vec<usize>) =

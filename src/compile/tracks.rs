@@ -28,7 +28,7 @@ struct TrackFields {
     velocity: Option<Velocity>,
     /// Seconds.
     memory: f64,
-    /// What the file does not say.
+    /// The part that the file does not state.
     reading: Reading,
 }
 
@@ -150,7 +150,7 @@ impl<'a> Elaborator<'a> {
     }
 }
 
-/// What tracks with these fields say about their file.
+/// The statements of tracks with these fields about their file.
 ///
 /// # Errors
 /// A number that cannot be one of a trial, or a rate.

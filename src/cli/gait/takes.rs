@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 const HINT: &str = "`smc explain E0720` lists the formats; `--source`, `--unit`, `--up`, `--fps`, `--root`, `--left` and \
                     `--right` say how to read a file";
 
-/// What a file without a frame rate needs.
+/// The cure of a file without a frame rate.
 const RATE_HINT: &str = "write `--fps 30`, with the number of the recording";
 
 /// What the files of a call have, and what is wrong with them.

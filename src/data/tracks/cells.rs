@@ -31,7 +31,7 @@ impl At {
     }
 }
 
-/// What separates the cells of a table with this header: a comma, or the semicolon or tab of spreadsheets.
+/// The separator of the cells of a table with this header: a comma, or the semicolon or tab of spreadsheets.
 pub(super) fn separator(header: &str) -> char {
     [';', '\t'].into_iter().find(|one| header.contains(*one)).unwrap_or(',')
 }

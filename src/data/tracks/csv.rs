@@ -27,7 +27,7 @@ pub(super) fn is_person(name: &str) -> bool {
     [COLUMNS[ID], COLUMNS[AGENT]].iter().any(|known| name.eq_ignore_ascii_case(known))
 }
 
-/// Where the columns of a table stand, from 0, and what separates its cells.
+/// The numbers of the columns of a table, from 0, and the separator of its cells.
 struct Header([Option<usize>; COLUMNS.len()], char);
 
 impl Header {

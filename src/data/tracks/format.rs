@@ -143,7 +143,7 @@ impl Format {
         Err(vec![LineError::of_file(format!("`{}` has {said}", self.name))])
     }
 
-    /// What is implausible about a recording with these velocities, where everybody has an id.
+    /// The implausible number of a recording with these velocities, if every agent has an id.
     pub fn doubt(&self, bytes: impl AsRef<[u8]>, reading: &Reading, velocity: Velocity) -> Option<Doubt> {
         self.read(bytes, reading).ok()?.with(velocity).doubt()
     }

@@ -59,7 +59,7 @@ pub(in crate::data) fn quoted(field: &str) -> String {
     if count <= LONGEST {
         return format!("`{}`", field.escape_debug());
     }
-    // Of names that begin alike the ends differ.
+    // Names that begin alike differ in their ends.
     let head: String = field.chars().take(LONGEST / 2).collect();
     let tail: String = field.chars().skip(count - LONGEST / 2).collect();
     format!("`{}…{}`", head.escape_debug(), tail.escape_debug())

@@ -6,7 +6,7 @@ use crate::base::geometry::Vec2;
 use crate::base::math;
 use std::ops::Range;
 
-/// What is implausible about a recording.
+/// An implausible number of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Doubt {
     /// The number, and those of people.
@@ -20,7 +20,7 @@ const SPEEDS: Range<f64> = 0.1..3.0;
 const USUAL_SPEED: f64 = 1.2;
 /// Distances to the nearest other person, m.
 const DISTANCES: Range<f64> = 0.15..20.0;
-/// What a file may have instead of metres, and the factor to metres; a penalty, so that inches must fit better than centimetres.
+/// The units that a file may have instead of metres, and the factor to metres; a penalty, so that inches must fit better than centimetres.
 const UNITS: [(&str, f64, f64); 5] = [
     ("millimetres", 1e-3, 0.0),
     ("centimetres", 1e-2, 0.0),
@@ -36,7 +36,7 @@ const ENOUGH: usize = 10;
 /// At most so many frames are searched for distances.
 const FRAMES: usize = 50;
 
-/// Somebody who goes somewhere.
+/// A person who goes somewhere.
 struct Going {
     rows: usize,
     seconds: f64,
@@ -72,7 +72,7 @@ fn cure_of_speed(speed: f64, apart: Option<f64>) -> String {
 }
 
 impl Recording {
-    /// What is implausible about it.
+    /// The implausible number.
     pub fn doubt(&self) -> Option<Doubt> {
         let doubt = |said: String, cure: String| Some(Doubt { said, cure });
         if self.velocities_are_blank() {

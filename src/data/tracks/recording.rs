@@ -30,7 +30,7 @@ impl Velocity {
 /// How far, in frames of the film, a time may lie from an annotated frame and still mean that frame.
 const SAME_FRAME: f64 = 0.5;
 
-/// Whoever comes farther from the first place does not stand, m.
+/// A person who comes farther from the first place does not stand, m.
 const MOVES: f64 = 0.5;
 
 /// One person in one annotated frame.

@@ -43,7 +43,7 @@ impl Answers<'_> {
         // From above the only statement that holds without a condition is that of the plain trials.
         let above = found.above();
         let floor = found.spreads.map_or(0.0, |[low, _]| low.floor);
-        // Of two bounds that contradict each other one is wrong, and nothing says which.
+        // One of two bounds that contradict each other is wrong, and nothing says which.
         let is_clear = floor <= above;
         let bound = (counts.trials > 0 && above < 1.0 && is_clear).then_some(above);
         let floor = (0.0 < floor && is_clear).then_some(floor);

@@ -12,7 +12,7 @@ pub const FORMAT: &str = "smc gait";
 /// The value of `version`.
 pub const VERSION: u32 = 1;
 
-/// What to do about a file that gives no model.
+/// The hint for a file that gives no model.
 pub const FIT_AGAIN: &str = "make the file again: `smc gait fit DATA -o FILE.gait`";
 
 /// Why a file gives no model.

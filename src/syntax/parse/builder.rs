@@ -24,7 +24,7 @@ pub(super) struct Builder<'s> {
     pub(super) text: &'s str,
     /// The kind of file.
     pub(super) root: Rule,
-    /// What hints write behind a time without a unit.
+    /// The unit that hints write behind a time without one.
     pub(super) unit: &'static str,
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Parts that ended early.

@@ -205,7 +205,7 @@ impl Surfaces {
         let (share, height, normal) = match form {
             Form::Side(side) => side.meets(from, to)?,
             Form::Disc => meets_disc(&self.wholes[*barrier as usize], from, to)?,
-            // Its edges stop whoever is outside.
+            // Its edges stop those who are outside.
             Form::Inside => return None,
         };
         let left = 1.0 - ON / height;
