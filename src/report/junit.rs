@@ -8,22 +8,20 @@ use super::phrase::{certified, one_line, settings};
 use super::text;
 use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Finding, QueryResult, Verdict};
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, BytesText, Event};
-use std::io;
+use askama::Template;
 
 /// A test case that did not pass: the element that says so, the type and the message in it, and its text.
 struct Fault {
     element: &'static str,
     kind: String,
     message: String,
-    text: Option<String>,
+    text: String,
 }
 
-/// A test case, and of a result: the scenario, the seconds and the text of the report.
-struct Case<'a> {
+/// A test case, and of a result: the seconds and the text of the report.
+struct Case {
     name: String,
-    result: Option<(&'a str, String, String)>,
+    result: Option<(String, String)>,
     fault: Option<Fault>,
 }
 
@@ -32,7 +30,31 @@ struct Suite<'a> {
     name: &'a str,
     properties: Vec<(&'static str, &'a str)>,
     time: Option<String>,
-    cases: Vec<Case<'a>>,
+    cases: Vec<Case>,
+}
+
+#[derive(Template)]
+#[template(path = "junit.xml")]
+struct Document<'a> {
+    scenario: &'a str,
+    time: String,
+    suites: Vec<Suite<'a>>,
+}
+
+impl Suite<'_> {
+    /// The number of cases with an element; of all without one.
+    fn count(&self, element: &str) -> usize {
+        let is_counted = |case: &&Case| {
+            element.is_empty() || case.fault.as_ref().is_some_and(|fault| fault.element == element)
+        };
+        self.cases.iter().filter(is_counted).count()
+    }
+}
+
+impl Document<'_> {
+    fn count(&self, element: &str) -> usize {
+        self.suites.iter().map(|suite| suite.count(element)).sum()
+    }
 }
 
 /// The report of a run, ending with a line end.
@@ -48,50 +70,47 @@ pub fn render(run: &CallResult) -> String {
             name: if name.is_empty() { run.scenario.as_str() } else { name },
             properties,
             time: Some(seconds(file.iter().map(|result| result.elapsed_s).sum())),
-            cases: file.iter().map(|result| case(run, result)).collect(),
+            cases: file.iter().map(|result| case(result)).collect(),
         });
     }
     let errors: Vec<&Finding> = run.diagnostics.iter().filter(|finding| finding.error).collect();
-    if !errors.is_empty() {
-        suites.push(stopped(errors.into_iter().map(refused).collect()));
+    let failed = |kind: &str, message: String| vec![error("run".to_owned(), kind, message, String::new())];
+    let stopped = if !errors.is_empty() {
+        errors.into_iter().map(refused).collect()
     } else if let Some(failure) = &run.failure {
-        let kind = if failure.is_bug() { "bug" } else { "input" };
-        suites.push(stopped(vec![error("run".to_owned(), kind, failure.message(), None)]));
+        failed(if failure.is_bug() { "bug" } else { "input" }, failure.message())
     } else if run.interrupted {
-        let message = "interrupted before all queries were complete".to_owned();
-        suites.push(stopped(vec![error("run".to_owned(), "interrupted", message, None)]));
+        failed("interrupted", "interrupted before all queries were complete".to_owned())
+    } else {
+        Vec::new()
+    };
+    if !stopped.is_empty() {
+        suites.push(Suite { name: "smc", properties: Vec::new(), time: None, cases: stopped });
     }
-    // Writing into memory does not fail.
-    let written = document(run, &suites).unwrap_or_default();
-    String::from_utf8(written).unwrap_or_default()
+    let document = Document { scenario: &run.scenario, time: seconds(run.elapsed_s), suites };
+    // Writing into memory does not fail. XML cannot hold all characters.
+    visible(&document.render().unwrap_or_default()).into_owned() + "\n"
 }
 
-fn stopped(cases: Vec<Case<'_>>) -> Suite<'_> {
-    Suite { name: "smc", properties: Vec::new(), time: None, cases }
-}
-
-fn error<'a>(name: String, kind: &str, message: String, text: Option<String>) -> Case<'a> {
+fn error(name: String, kind: &str, message: String, text: String) -> Case {
     Case { name, result: None, fault: Some(Fault { element: "error", kind: kind.to_owned(), message, text }) }
 }
 
 /// A test case for an error of the front end.
-fn refused<'a>(finding: &Finding) -> Case<'a> {
+fn refused(finding: &Finding) -> Case {
     let hint = finding.hint.as_ref().map_or(String::new(), |hint| format!("\nhint: {hint}"));
-    error(
-        finding.line(),
-        finding.code.as_str(),
-        finding.message.clone(),
-        Some(format!("{}{hint}", finding.line())),
-    )
+    let text = format!("{}{hint}", finding.line());
+    error(finding.line(), finding.code.as_str(), finding.message.clone(), text)
 }
 
-fn case<'a>(run: &'a CallResult, result: &QueryResult) -> Case<'a> {
+fn case(result: &QueryResult) -> Case {
     let statement = match certified(result) {
         empty if empty.is_empty() => "nothing is certified".to_owned(),
         statement => statement,
     };
     let bad = |element, word: &str| {
-        Some(Fault { element, kind: word.to_owned(), message: format!("{word}: {statement}"), text: None })
+        let message = format!("{word}: {statement}");
+        Some(Fault { element, kind: word.to_owned(), message, text: String::new() })
     };
     let fault = match result.verdict {
         Some(Verdict::Violated) => bad("failure", "violated"),
@@ -103,87 +122,7 @@ fn case<'a>(run: &'a CallResult, result: &QueryResult) -> Case<'a> {
     if !with.is_empty() {
         name = format!("{name} where {with}");
     }
-    let output = text::block(result, Palette::PLAIN);
-    Case { name, result: Some((run.scenario.as_str(), seconds(result.elapsed_s), output)), fault }
-}
-
-fn document(run: &CallResult, suites: &[Suite<'_>]) -> io::Result<Vec<u8>> {
-    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 4);
-    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let count = |element: Option<&str>| -> String {
-        let of = |suite: &Suite<'_>| suite.cases.iter().filter(|case| counts(case, element)).count();
-        suites.iter().map(of).sum::<usize>().to_string()
-    };
-    let element = writer.create_element("testsuites").with_attributes([
-        ("name", shown(&format!("smc {}", run.scenario)).as_str()),
-        ("tests", &count(None)),
-        ("skipped", "0"),
-        ("failures", &count(Some("failure"))),
-        ("errors", &count(Some("error"))),
-        ("time", &seconds(run.elapsed_s)),
-    ]);
-    element.write_inner_content(|writer| suites.iter().try_for_each(|suite| write_suite(writer, suite)))?;
-    writer.write_indent()?;
-    Ok(writer.into_inner())
-}
-
-fn write_suite(writer: &mut Writer<Vec<u8>>, suite: &Suite<'_>) -> io::Result<()> {
-    let count = |element| suite.cases.iter().filter(|case| counts(case, element)).count().to_string();
-    let mut element = writer.create_element("testsuite").with_attributes([
-        ("name", shown(suite.name).as_str()),
-        ("tests", &count(None)),
-        ("skipped", "0"),
-        ("errors", &count(Some("error"))),
-        ("failures", &count(Some("failure"))),
-    ]);
-    if let Some(time) = &suite.time {
-        element = element.with_attribute(("time", time.as_str()));
-    }
-    element.write_inner_content(|writer| {
-        if !suite.properties.is_empty() {
-            writer.create_element("properties").write_inner_content(|writer| {
-                suite.properties.iter().try_for_each(|(name, value)| {
-                    let pair = [("name", *name), ("value", &shown(value))];
-                    writer.create_element("property").with_attributes(pair).write_empty().map(drop)
-                })
-            })?;
-        }
-        suite.cases.iter().try_for_each(|case| write_case(writer, case))
-    })?;
-    Ok(())
-}
-
-fn write_case(writer: &mut Writer<Vec<u8>>, case: &Case<'_>) -> io::Result<()> {
-    let mut element = writer.create_element("testcase").with_attribute(("name", shown(&case.name).as_str()));
-    if let Some((scenario, time, _)) = &case.result {
-        element = element.with_attributes([("classname", shown(scenario).as_str()), ("time", time)]);
-    }
-    element.write_inner_content(|writer| {
-        if let Some(fault) = &case.fault {
-            let attributes = [("message", shown(&fault.message)), ("type", fault.kind.clone())];
-            let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
-            let element = writer.create_element(fault.element).with_attributes(attributes);
-            match &fault.text {
-                Some(text) => element.write_text_content(BytesText::new(&shown(text)))?,
-                None => element.write_empty()?,
-            };
-        }
-        if let Some((.., output)) = &case.result {
-            writer.create_element("system-out").write_text_content(BytesText::new(&shown(output)))?;
-        }
-        Ok(())
-    })?;
-    Ok(())
-}
-
-/// Whether a case counts among those with this element; all do without one.
-fn counts(case: &Case<'_>, element: Option<&str>) -> bool {
-    element.is_none_or(|element| case.fault.as_ref().is_some_and(|fault| fault.element == element))
-}
-
-/// A text without the characters that XML cannot hold.
-fn shown(text: &str) -> String {
-    visible(text).into_owned()
+    Case { name, result: Some((seconds(result.elapsed_s), text::block(result, Palette::PLAIN))), fault }
 }
 
 /// Seconds with three decimals.
