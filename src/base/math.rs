@@ -250,6 +250,13 @@ pub fn ln_1p(x: f64) -> f64 {
     if u == 1.0 { x } else { ln(u) * x / (u - 1.0) }
 }
 
+/// The median; of an even number of values the greater one of the two in the middle. `None` of no values.
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 mod tests {

@@ -1,7 +1,6 @@
 //! The command line as typed: data only.
 
 use super::advise::AdviseCommand;
-use super::destination::Destination;
 use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
@@ -10,6 +9,7 @@ use super::replay::{EvaluateCommand, FitCommand, MonitorCommand};
 use super::simulate::choice::Keep;
 use super::simulate::destination::left_out;
 use super::terminal::ColorChoice;
+use super::values::Destination;
 use super::values::{
     Limit, Model, TextFormat, parse_count, parse_moment, parse_quiet, parse_share, parse_velocity,
 };

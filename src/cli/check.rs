@@ -4,10 +4,10 @@ use super::arguments::{Check, Questions};
 use super::deadline::{Deadline, Ended, Phase};
 use super::launch::Launcher;
 use super::merge::Rounds;
-use super::outputs::Outputs;
 use super::parts::PartsFolder;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
+use super::values::Destination;
 use super::{complaint, inputs, output, page, values};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
@@ -16,16 +16,15 @@ use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
 use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, forecast, run as run_study};
-use crate::gait;
-use crate::library;
 use crate::model::Scenario;
 use crate::report::html::Page;
-use crate::report::{self, ExitCode as Exit, Format, Palette};
+use crate::report::{ExitCode as Exit, Format, Palette};
 use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
-use std::path::Path;
+use crate::{gait, library, report};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Where outcomes come from: trials that are run or launched, or the parts in a folder.
@@ -371,4 +370,44 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 fn line(arguments: &Questions) -> CommandLine {
     let line = page::line(&arguments.model, arguments.velocity);
     CommandLine { properties: arguments.properties.clone(), ..line }
+}
+
+// Where the results of a call go, and in which formats: one to standard output, each of the others into a file.
+
+/// Format of what a call prints, and the files that it writes.
+#[derive(Clone, Debug)]
+struct Outputs {
+    pub(super) screen: Format,
+    pub(super) files: Vec<(Format, PathBuf)>,
+    /// The page of charts and traces.
+    pub(super) page: Option<PathBuf>,
+}
+
+impl Outputs {
+    /// As the options of a call say.
+    ///
+    /// # Errors
+    /// Two formats want standard output or one file, or a file is one that the call reads.
+    fn new(
+        chosen: &[Destination],
+        is_brief: bool,
+        page: Option<&Path>,
+        inputs: &[PathBuf],
+    ) -> Result<Self, Diagnostic> {
+        let printed = chosen.iter().filter(|destination| destination.file.is_none()).map(|one| one.format);
+        let mut printed = printed.chain(is_brief.then_some(Format::Brief));
+        let screen = printed.next().unwrap_or(Format::Text);
+        if printed.next().is_some() {
+            return Err(complaint::argument(
+                "two formats are for standard output",
+                "write one of them into a file: `--format json=results.json`",
+            ));
+        }
+        let files = chosen.iter().filter_map(|one| Some((one.format, one.file.clone()?)));
+        let files: Vec<_> = files.collect();
+        let names: Vec<Option<&Path>> =
+            files.iter().map(|(_, file)| Some(file.as_path())).chain([page]).collect();
+        output::guard_all(&names, inputs)?;
+        Ok(Self { screen, files, page: page.map(Path::to_owned) })
+    }
 }

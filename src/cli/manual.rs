@@ -1,8 +1,12 @@
 //! Completions and man pages.
 
-use super::arguments::Arguments;
+use super::arguments::{Arguments, Explain};
 use super::complaint;
 use super::terminal::print;
+use crate::compile::nearest::nearest;
+use crate::model::BuiltIn;
+use crate::stats::PROCEDURES;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use clap::CommandFactory;
 use std::path::Path;
@@ -21,4 +25,62 @@ pub(super) fn pages(directory: &Path) -> Result<(), Diagnostic> {
     written.map_err(|error| {
         complaint::output(format!("man pages cannot be written to `{}`: {error}", directory.display()))
     })
+}
+
+// `smc explain`: what a code means and what to do, what a procedure takes and guarantees, what a function gives.
+
+/// The manual of the language.
+const MANUAL: &str = include_str!("../../docs/language.md");
+
+/// Runs the command.
+pub(super) fn explain(arguments: &Explain) -> Result<(), Diagnostic> {
+    let Some(wanted) = &arguments.name else {
+        let codes = Code::ALL.iter().map(|code| format!("{code}  {}\n", code.title()));
+        let procedures = PROCEDURES.iter().map(|one| format!("{} by {}\n", one.serves, one.signature()));
+        let functions = BuiltIn::names().map(|name| format!("{name}(…)\n"));
+        return print(&codes.chain(procedures).chain(functions).collect::<String>());
+    };
+    if let Ok(code) = wanted.parse::<Code>() {
+        return print(code.page().trim_start_matches("# "));
+    }
+    let procedures = PROCEDURES.iter().filter(|one| one.name == wanted.trim()).map(|one| one.page());
+    let pages: Vec<String> = procedures.chain(BuiltIn::find(wanted.trim()).and_then(function)).collect();
+    if !pages.is_empty() {
+        return print(&pages.join("\n"));
+    }
+    let hint = nearest(&wanted.trim().to_ascii_uppercase(), Code::ALL.iter().map(|code| code.name()))
+        .or_else(|| nearest(wanted.trim(), PROCEDURES.iter().map(|one| one.name).chain(BuiltIn::names())));
+    let hint = hint.map_or_else(
+        || "`smc explain` lists all names".to_owned(),
+        |near| format!("did you mean {near}? `smc explain` lists all names"),
+    );
+    let said = format!("unknown code, procedure or function `{wanted}`");
+    Err(complaint::argument(said, hint))
+}
+
+/// What the manual says of a function: its row in the table of functions, or the paragraph in which it stands.
+fn function(built_in: &BuiltIn) -> Option<String> {
+    let (_, manual) = MANUAL.split_once("\n## Properties\n")?;
+    let (call, name) = (format!("`{}(", built_in.name), format!("`{}`", built_in.name));
+    // A table has a column of units, or none.
+    let row = |is_call: bool| {
+        manual.lines().filter(|line| line.starts_with("| `")).find_map(|line| {
+            let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+            let (calls, unit, value) = match cells[..] {
+                [calls, value] => (calls, "", value),
+                [calls, unit, value] => (calls, unit, value),
+                _ => return None,
+            };
+            let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+            let place = if is_call { calls } else { value };
+            place.contains(&call).then(|| format!("{}{unit}\n\n{value}\n", calls.replace('`', "")))
+        })
+    };
+    let paragraph = || {
+        let is_text = |text: &&str| !text.starts_with(['|', '#']) && !text.starts_with("```");
+        let texts = manual.split("\n\n").filter(is_text);
+        let found = texts.into_iter().find(|text| text.contains(&call) || text.contains(&name))?;
+        Some(format!("{}\n\n{found}\n", built_in.name))
+    };
+    row(true).or_else(|| row(false)).or_else(paragraph)
 }

@@ -6,10 +6,8 @@ mod check;
 mod compare_walks;
 mod complaint;
 mod deadline;
-mod destination;
 mod drift;
 mod end;
-mod explain;
 mod format;
 mod gait;
 mod infer;
@@ -19,7 +17,6 @@ mod manual;
 mod merge;
 mod misuse;
 mod output;
-mod outputs;
 mod page;
 mod parts;
 mod path;
@@ -39,10 +36,10 @@ use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use arguments::{Arguments, Command};
 use check::Way;
-use destination::Destination;
 use std::borrow::Cow;
 use std::process;
 use terminal::{Colors, say};
+use values::Destination;
 
 /// Stack of the thread that does the work: deep formulas are walked recursively, up to a limit.
 const STACK: usize = 256 << 20;
@@ -162,7 +159,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),
         Command::Fmt(command) => format::run(command, colors),
-        Command::Explain(command) => ended(explain::run(command)),
+        Command::Explain(command) => ended(manual::explain(command)),
         Command::Completions { shell } => ended(manual::completions(*shell)),
         Command::Man { directory } => ended(manual::pages(directory)),
     }

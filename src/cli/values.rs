@@ -3,9 +3,11 @@
 use crate::data::tracks::Velocity;
 use crate::engine::{Fault, Threads};
 use crate::library;
+use crate::report::Format;
 use crate::syntax::diagnostic::Diagnostic;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// A text or JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -120,6 +122,32 @@ pub(super) fn parse_duration(text: &str) -> Result<std::time::Duration, String> 
 /// `seen` or `recorded`.
 pub(super) fn parse_velocity(text: &str) -> Result<Velocity, String> {
     Velocity::from_name(text).ok_or_else(|| "write `seen` or `recorded`".to_owned())
+}
+
+// Where one result of a call goes, as an option names it: a format, and perhaps a file.
+
+/// `json`, or `json=FILE`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Destination {
+    pub(super) format: Format,
+    pub(super) file: Option<PathBuf>,
+}
+
+impl FromStr for Destination {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, file) = text.split_once('=').map_or((text, None), |(name, file)| (name, Some(file)));
+        let format = <Format as ValueEnum>::from_str(name, false).map_err(|_| {
+            let names = Format::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+            let names: Vec<String> = names.map(|value| value.get_name().to_owned()).collect();
+            format!("the formats are {}; for a file write `json=FILE`", names.join(", "))
+        })?;
+        if file.is_some_and(str::is_empty) {
+            return Err(format!("the name of the file is missing: write `{name}=FILE`"));
+        }
+        Ok(Self { format, file: file.map(PathBuf::from) })
+    }
 }
 
 #[cfg(test)]

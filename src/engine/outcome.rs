@@ -2,30 +2,18 @@
 //!
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
-mod asked;
-mod comparison;
-mod counts;
 mod distribution;
 mod evidence;
-mod interval;
 mod ranking;
-mod rare;
 mod witness;
 
-pub use super::certificate::{Certificate, Certified};
 pub use super::decider::Decider;
-pub use super::finding::{Finding, Spot};
 use super::flaw::Flaw;
-pub use super::shortfall::Shortfall;
 use crate::base::fingerprint::Fingerprint;
-pub use asked::{AskedQuery, Kind};
-pub use comparison::{Comparison, Side};
-pub use counts::{ConsumedTrials, Counts};
+use crate::stats::Claim;
 pub use distribution::{Distribution, Histogram, Quantile, Step};
 pub use evidence::{Evidence, Snapshot, Standing, next_after};
-pub use interval::Interval;
 pub use ranking::{RankedOption, Ranking, Status};
-pub use rare::Rare;
 pub use witness::{Shows, Witness};
 
 /// Everything one call has computed.
@@ -235,4 +223,272 @@ impl Stop {
     pub const fn is_early(self) -> bool {
         matches!(self, Self::Deadline | Self::Interrupt | Self::Missing)
     }
+}
+
+// What was asked: a query under one setting, as reports quote it.
+
+/// A query under one setting.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AskedQuery {
+    /// Its number among the queries of the call, from 0; together with the text it names the query.
+    pub index: usize,
+    /// Name of the property asked about, if it is one; may repeat.
+    pub name: Option<String>,
+    /// The query as written.
+    pub text: String,
+    /// Property file.
+    pub file: String,
+    /// Line of the query in it, from 1.
+    pub line: usize,
+    /// What is asked.
+    pub kind: Kind,
+    /// Values of swept or `under` parameters, as written; may be empty.
+    pub settings: Vec<(String, String)>,
+    /// The horizon with its unit, `30 s`, where a formula has no bound of its own.
+    pub horizon: Option<String>,
+    /// What was drawn once for the run, so that the result is about it alone: `the roadmap of planner, seed 0`.
+    pub given: Option<String>,
+}
+
+impl AskedQuery {
+    /// A query without name, place or setting.
+    pub fn new(index: usize, kind: Kind, text: impl Into<String>) -> Self {
+        Self { index, kind, text: text.into(), ..Self::default() }
+    }
+}
+
+/// What a query asks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Whether a quantity passes a threshold.
+    #[default]
+    Check,
+    /// A quantity.
+    Estimate,
+    /// The difference of a quantity under two settings.
+    Compare,
+    /// The best of several moves or values.
+    Rank,
+}
+
+impl Kind {
+    /// Its keyword.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Check => "check",
+            Self::Estimate => "estimate",
+            Self::Compare => "compare",
+            Self::Rank => "rank",
+        }
+    }
+}
+
+// An estimate by splitting.
+
+/// An estimate by splitting, with the plain trials beside it.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Rare {
+    /// Independent runs.
+    pub runs: u64,
+    /// Runs in which no path reached the event.
+    pub extinct: u64,
+    /// Standard deviation of the estimate of one run.
+    pub deviation: f64,
+    /// Levels of a run, on average.
+    pub levels: f64,
+    /// Paths of all runs.
+    pub paths: u64,
+    /// Steps of the model in all paths.
+    pub steps: u64,
+    /// Mean of the runs; `None` if they did not come to an end.
+    pub estimate: Option<f64>,
+    /// Lower end of the asymptotic interval.
+    pub low: f64,
+    /// Upper end of it.
+    pub high: f64,
+    /// Lower end of the 99 % interval of the plain trials.
+    pub plain_low: f64,
+    /// Upper end of it.
+    pub plain_high: f64,
+    /// Upper bound of the probability, certified by the plain trials alone.
+    pub plain_bound: f64,
+    /// Lower bound of the probability, certified by the runs.
+    pub floor: f64,
+    /// Whether the mean of the runs lies in the interval of the plain trials; if not, it is refused.
+    pub agrees: bool,
+}
+
+// The outcome of a `compare`.
+
+/// The two sides of a `compare`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The side of `under`.
+    pub first: Side,
+    /// The side of `with`.
+    pub second: Side,
+    /// First less second, over pairs of trials with the same random numbers.
+    pub difference: Side,
+}
+
+/// One side of a comparison, or the difference. Of the difference, `trials` counts pairs, successes those in
+/// which only the first holds, and failures those in which only the second does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// Its settings, as written; for the difference `first - second`.
+    pub label: String,
+    /// What was measured.
+    pub value: Interval,
+    /// Its trials.
+    pub counts: Counts,
+}
+
+// What a result certifies, in numbers. `QueryResult::certifies` says the same in words.
+
+/// A claim about the quantity of a query, and how surely it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// What is claimed.
+    pub claim: Certified,
+    /// The probability, at most, with which the procedure makes such a claim although it is false.
+    pub error: f64,
+}
+
+/// What is claimed, in the unit of the result.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Certified {
+    /// A test has decided. For the check of a quantile it is about the probability that `QueryResult::of` names.
+    Decided(Claim),
+    /// The quantity lies between the two, inclusive; of a comparison it is the difference. An end may be infinite.
+    Between {
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// An option of a ranking is at most so much worse than the best one.
+    Best {
+        /// Its name.
+        choice: String,
+        /// The largest loss.
+        gap: f64,
+    },
+}
+
+// What time or trials did not suffice for.
+
+/// How a query that is no `check` falls short of what it asks, for lack of time or of trials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shortfall {
+    /// It got no trial.
+    NotBegun,
+    /// It got fewer trials than it takes.
+    Incomplete,
+}
+
+impl Shortfall {
+    /// Its words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NotBegun => "not begun",
+            Self::Incomplete => "incomplete",
+        }
+    }
+}
+
+impl QueryResult {
+    /// How it falls short of what it asks, if it does. A `check` that does is undecided.
+    pub fn shortfall(&self) -> Option<Shortfall> {
+        let short = self.stopped_by == Stop::Cap || self.stopped_by.is_early();
+        (self.verdict.is_none() && short).then_some(match self.consumed.counts.trials {
+            0 => Shortfall::NotBegun,
+            _ => Shortfall::Incomplete,
+        })
+    }
+}
+
+// What was found wrong with, or odd in, the inputs of a call, as reports quote it: plain data, without sources.
+
+/// Where in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spot {
+    /// The file as named in the call.
+    pub file: String,
+    /// Line and column of the first character, both from 1; the column counts characters.
+    pub start: (usize, usize),
+    /// Line and column one past the last character.
+    pub end: (usize, usize),
+}
+
+/// One error or warning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// Whether it is an error, or a warning only.
+    pub error: bool,
+    /// Its code, such as `E0201`.
+    pub code: String,
+    /// Its place; `None` for what has none, such as a missing file.
+    pub spot: Option<Spot>,
+    /// What is wrong.
+    pub message: String,
+    /// What is said at the mark; may be empty.
+    pub label: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+impl Finding {
+    /// `error[E0201] at a.bltl:3:8: there is no name …`
+    pub fn line(&self) -> String {
+        let word = if self.error { "error" } else { "warning" };
+        let at = self.spot.as_ref().map_or(String::new(), |spot| {
+            let (line, column) = spot.start;
+            format!(" at {}:{line}:{column}", spot.file)
+        });
+        format!("{word}[{}]{at}: {}", self.code, self.message)
+    }
+}
+
+// A number with an interval.
+
+/// A number with an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The estimate.
+    pub estimate: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+// Consumed trials, by outcome and by what else is counted of them.
+
+/// The trials that a result was computed from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ConsumedTrials {
+    /// Their number, in all and by outcome.
+    pub counts: Counts,
+    /// Those clipped by a declared range.
+    pub clipped: u64,
+    /// Those in which radii were shrunk to part people who overlap at the start.
+    pub shrunk: u64,
+    /// Those in which somebody had no way to a goal.
+    pub no_way: u64,
+    /// Steps of the model in all of them.
+    pub steps: u64,
+}
+
+/// Consumed trials by outcome. Trials with a number instead of a truth value are neither successes nor
+/// failures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// All.
+    pub trials: u64,
+    /// Those in which the formula holds.
+    pub successes: u64,
+    /// Those in which it does not.
+    pub failures: u64,
+    /// Those that diverged or hit a cap.
+    pub unresolved: u64,
 }

@@ -5,8 +5,8 @@
 //! where both are at one place.
 
 use super::assignment::assign_some;
-use super::distance::distance;
 use super::near;
+use super::trace::distance;
 use crate::base::geometry::Vec2;
 use crate::data::tracks::{Batch, Observation};
 use std::collections::BTreeMap;

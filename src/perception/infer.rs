@@ -2,7 +2,6 @@
 
 use super::clusters::{Clustering, clusters, instant_of};
 use super::group_score::{GroupScore, Seen, score_groups};
-use super::intervals::intervals;
 use super::lineage::Lineage;
 use super::lives::{Group, Series, lives, smooth};
 use super::motion::Motion;
@@ -10,6 +9,7 @@ use super::score::{TrackScore, TrackTraces, score_tracks};
 use super::trace::{Trace, TracePoint};
 use super::tracker::{Tracker, Tracking, TrackingError};
 use crate::base::geometry::Vec2;
+use crate::base::math::median;
 use crate::base::random::TrialKey;
 use crate::data::tracks::Batch;
 use std::collections::{BTreeMap, BTreeSet};
@@ -172,6 +172,18 @@ fn instants(points: &[InferredPoint]) -> Vec<Vec<Seen>> {
         .collect()
 }
 
+// Contiguous intervals of a sequence of times: it is cut where successive ones are farther apart than usual.
+
+/// Times whose distance is at most this much above the usual one are not cut: rounding, and clocks of sensors.
+const TOLERANCE: f64 = 1.05;
+
+/// First and last time of each interval, s, of ascending times. The usual distance is the median; `longest` replaces it.
+pub fn intervals(times: &[f64], longest: Option<f64>) -> Vec<(f64, f64)> {
+    let usual = || median(times.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(0.0);
+    let longest = longest.unwrap_or_else(usual) * TOLERANCE;
+    times.chunk_by(|a, b| b - a <= longest).map(|part| (part[0], part[part.len() - 1])).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::motion::ConstantVelocity;
@@ -199,5 +211,13 @@ mod tests {
         assert_eq!(found.groups[1].born, super::super::lives::Birth::Split(1));
         assert_eq!(found.points.len(), 40);
         assert!(found.score.unwrap().precision == 1.0);
+    }
+
+    #[test]
+    fn a_long_distance_parts_them() {
+        assert_eq!(intervals(&[0.0, 0.4, 0.8, 2.0, 2.4], None), [(0.0, 0.8), (2.0, 2.4)]);
+        assert_eq!(intervals(&[0.0, 0.4, 0.8, 2.0, 2.4], Some(1.2)), [(0.0, 2.4)]);
+        assert_eq!(intervals(&[3.0], None), [(3.0, 3.0)]);
+        assert!(intervals(&[], None).is_empty());
     }
 }

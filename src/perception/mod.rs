@@ -6,11 +6,9 @@
 
 pub mod assignment;
 pub mod clusters;
-mod distance;
 mod fusion;
 pub mod group_score;
 pub mod infer;
-pub mod intervals;
 pub mod lineage;
 pub mod lives;
 pub mod motion;

@@ -33,3 +33,30 @@ impl Trace {
         self.points.last().copied().unwrap_or(unborn)
     }
 }
+
+/// Position, m, and velocity, m/s, if it is known.
+pub(super) type Placed = (Vec2, Option<Vec2>);
+
+/// Distance of a projected trace and an observation, `D_trace`, m: `D² = |Δx|² + (1 s · |Δv| / discount)²`, without the second
+/// term where one side has no velocity.
+pub(super) fn distance((a, v): Placed, (b, w): Placed, discount: f64) -> f64 {
+    let speed = match (v, w) {
+        (Some(v), Some(w)) => (v - w).norm_squared() / (discount * discount),
+        _ => 0.0,
+    };
+    ((a - b).norm_squared() + speed).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn velocities_count_half_and_only_if_both_are_known() {
+        let (a, b) = (Vec2::new(0.0, 0.0), Vec2::new(3.0, 0.0));
+        let fast = Some(Vec2::new(0.0, 8.0));
+        assert_eq!(distance((a, fast), (b, Some(Vec2::zeros())), 2.0), 5.0);
+        assert_eq!(distance((a, fast), (b, None), 2.0), 3.0);
+        assert_eq!(distance((a, None), (b, fast), 2.0), 3.0);
+    }
+}

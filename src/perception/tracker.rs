@@ -2,11 +2,10 @@
 //! Group Motion", 2017, Algorithm 2), one time after the other.
 
 use super::assignment::{Costs, assign_some};
-use super::distance::distance;
 use super::fusion::{Fused, fuse};
 use super::motion::Motion;
 use super::near;
-use super::trace::{Trace, TracePoint};
+use super::trace::{Trace, TracePoint, distance};
 use crate::base::geometry::Vec2;
 use crate::data::tracks::Batch;
 use std::collections::BTreeMap;

@@ -9,7 +9,6 @@ mod circle;
 mod field;
 mod goal;
 mod network;
-mod rim;
 mod survey;
 mod tangent;
 #[cfg(test)]

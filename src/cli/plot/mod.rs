@@ -1,14 +1,12 @@
 //! `smc plot`: a figure of results as SVG.
 
-mod arguments;
-
 use super::{complaint, inputs, output};
-use crate::report::figure::draw;
+use crate::report::figure::{Figure, draw};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-pub(super) use arguments::PlotCommand;
+use clap::Args;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Runs the command.
 pub(super) fn run(command: &PlotCommand) -> Result<(), Diagnostic> {
@@ -26,4 +24,22 @@ pub(super) fn run(command: &PlotCommand) -> Result<(), Diagnostic> {
     let svg = draw(command.figure, &file, command.only.as_deref())
         .map_err(|flaw| wrong(flaw.message, flaw.hint))?;
     output::put(command.output.as_deref(), &svg)
+}
+
+// The arguments of `smc plot`.
+
+/// `smc plot`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct PlotCommand {
+    /// Results of `smc check --format json`, or `-` for standard input; for `calibration` those of `smc evaluate`.
+    results: String,
+    /// What is drawn.
+    #[arg(long, value_enum)]
+    figure: Figure,
+    /// Of several queries that could be drawn this one: the name of its property, or its number in writing order.
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+    /// The figure; standard output by default.
+    #[arg(short, long, value_name = "FILE.svg")]
+    output: Option<PathBuf>,
 }

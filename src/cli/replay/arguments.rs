@@ -22,10 +22,17 @@ pub(in crate::cli) struct Replayed {
     /// Time between two instants; the step of the recording by default.
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
     pub(super) every: Option<Duration>,
-    /// First time of the replay; the beginning by default.
+    #[command(flatten)]
+    pub(super) span: Span,
+}
+
+/// Which times are used, and how.
+#[derive(Args, Clone, Debug)]
+pub(in crate::cli) struct Span {
+    /// First time; the beginning by default.
     #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) from: Option<f64>,
-    /// Last time of the replay; the end by default.
+    /// Last time; the end by default.
     #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) to: Option<f64>,
     /// Confidence of intervals, by bootstrap over persons.
@@ -42,7 +49,7 @@ pub(in crate::cli) struct Replayed {
     pub(super) output: Option<PathBuf>,
 }
 
-impl Replayed {
+impl Span {
     /// The first and the last time, s.
     pub(super) fn between(&self) -> (f64, f64) {
         (self.from.unwrap_or(f64::NEG_INFINITY), self.to.unwrap_or(f64::INFINITY))
@@ -122,12 +129,8 @@ pub(in crate::cli) struct FitCommand {
     /// Time between two instants.
     #[arg(long, value_name = "TIME", default_value = "2s", value_parser = parse_duration)]
     pub(super) every: Duration,
-    /// First time; the beginning by default.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
-    pub(super) from: Option<f64>,
-    /// Last time; the end by default.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
-    pub(super) to: Option<f64>,
+    #[command(flatten)]
+    pub(super) span: Span,
     /// Trials of each instant.
     #[arg(long, value_name = "N", default_value = "24", value_parser = clap::value_parser!(u32).range(5..=100_000))]
     pub(super) trials: u32,
@@ -149,21 +152,9 @@ pub(in crate::cli) struct FitCommand {
     /// Velocities: `seen` (the difference from the last position) or `recorded` (as in the file).
     #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
     pub(super) velocity: Velocity,
-    /// Confidence of intervals, by bootstrap over persons.
-    #[arg(long, value_name = "SHARE", default_value = "95%", value_parser = parse_share)]
-    pub(super) confidence: f64,
-    /// Seed of all random numbers.
-    #[arg(long, default_value_t = 0)]
-    pub(super) seed: u64,
-    /// Number of threads; all cores by default. Never changes a result.
-    #[arg(short = 'j', long)]
-    pub(super) threads: Option<usize>,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = FitFormat::Text)]
     pub(super) format: FitFormat,
-    /// File to write instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
     /// Write no log of the generations on standard error.
     #[arg(short, long)]
     pub(super) quiet: bool,
@@ -177,12 +168,7 @@ impl FitCommand {
             properties: self.by.clone(),
             replay: self.tracks.clone(),
             every: Some(self.every),
-            from: self.from,
-            to: self.to,
-            confidence: self.confidence,
-            seed: self.seed,
-            threads: self.threads,
-            output: self.output.clone(),
+            span: self.span.clone(),
         }
     }
 }

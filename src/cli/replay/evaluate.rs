@@ -40,7 +40,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         kinds.extend(arguments.realism.then(|| LANGEVIN.to_owned()));
     }
     kinds.dedup();
-    let options = Evaluating { trials: arguments.trials, seed: arguments.replayed.seed };
+    let options = Evaluating { trials: arguments.trials, seed: arguments.replayed.span.seed };
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
     let judged = monitor(replay, &instants, arguments.beyond, threads)?;
@@ -58,7 +58,7 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         persons: persons.numbers.len(),
         draws: DRAWS,
         seed: options.seed,
-        confidence: arguments.replayed.confidence,
+        confidence: arguments.replayed.span.confidence,
     };
     let constant = kinds.iter().position(|kind| kind == CONSTANT).map(|k| &found[k]);
     let names = &replay.formulas.names;

@@ -32,7 +32,7 @@ pub(in crate::cli) fn run(arguments: &FitCommand, colors: Colors) -> Exit {
 
 fn counting(arguments: &FitCommand) -> Counting {
     let by_properties = !arguments.by.is_empty();
-    Counting { trials: arguments.trials.into(), seed: arguments.seed, by_properties }
+    Counting { trials: arguments.trials.into(), seed: arguments.span.seed, by_properties }
 }
 
 fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {
@@ -51,9 +51,9 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
         generations: arguments.generations,
         population: arguments.population,
         held_out: arguments.held_out,
-        seed: arguments.seed,
+        seed: arguments.span.seed,
         draws: DRAWS,
-        confidence: arguments.confidence,
+        confidence: arguments.span.confidence,
     };
     let ways = Ways::default();
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
@@ -91,10 +91,10 @@ fn text(arguments: &FitCommand, call: &Call) -> Result<String, Vec<Diagnostic>> 
         kind,
         base,
         trials: arguments.trials.into(),
-        seed: arguments.seed,
+        seed: arguments.span.seed,
         every: *every,
         instants: instants.len() as u64,
-        confidence: arguments.confidence,
+        confidence: arguments.span.confidence,
         found,
         test,
     };

@@ -59,11 +59,11 @@ fn replay(
     sources: &mut Vec<Source>,
     work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
 ) -> Result<(), Vec<Diagnostic>> {
-    output::guard(replayed.output.as_deref(), paths)?;
-    let threads = threads(replayed.threads)?;
+    output::guard(replayed.span.output.as_deref(), paths)?;
+    let threads = threads(replayed.span.threads)?;
     let replay = Replay::new(&parsed.input(), &replayed.replay, velocity, whose)?;
     let every = replayed.every.map_or(replay.recording.step(), |every| every.as_secs_f64());
-    let instants = replay.instants(every, replayed.between());
+    let instants = replay.instants(every, replayed.span.between());
     if instants.is_empty() {
         let said =
             format!("the recording `{}` has no instant of this user between these times", replay.tracks);
@@ -73,6 +73,6 @@ fn replay(
     let call = Call { replay, threads, instants, every };
     sources.clone_from(&call.replay.sources);
     let text = work(&call)?;
-    let shown = if replayed.output.is_none() { visible(&text) } else { text.as_str().into() };
-    Ok(output::put(replayed.output.as_deref(), &shown)?)
+    let shown = if replayed.span.output.is_none() { visible(&text) } else { text.as_str().into() };
+    Ok(output::put(replayed.span.output.as_deref(), &shown)?)
 }

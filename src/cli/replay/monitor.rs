@@ -33,7 +33,7 @@ fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnosti
             verdicts: one.truths.iter().map(verdict).collect(),
         })
         .collect();
-    let confidence = arguments.replayed.confidence;
+    let confidence = arguments.replayed.span.confidence;
     let names = replay.formulas.names.iter().enumerate();
     let monitored = Monitored {
         model: arguments.replayed.model.scenario.clone(),

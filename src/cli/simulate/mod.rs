@@ -3,31 +3,28 @@
 pub(super) mod choice;
 pub(super) mod destination;
 mod keep;
-mod option;
 mod rows;
 
 use super::arguments::Simulate;
-use super::complaint;
-use super::inputs;
-use super::output;
-use super::page::{self, Trials};
+use super::page::Trials;
 use super::terminal::{Colors, warn};
+use super::{complaint, inputs, output, page};
 use crate::base::random::MOST_TRIALS;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::Study;
-use crate::data::table::{self, Table, TraceFormat};
+use crate::compile::nearest::nearest;
+use crate::data::table;
+use crate::data::table::{Table, TraceFormat};
 use crate::engine::cell::Item;
 use crate::engine::{PreparedWorld, placeable, smaller};
-use crate::gait;
 use crate::kernel::Program;
-use crate::library;
 use crate::model::Scenario;
 use crate::report::ExitCode as Exit;
 use crate::route::Ways;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Source;
+use crate::{gait, library};
 use destination::{Chosen, Destination};
-use option::option;
 use rows::Rows;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -207,4 +204,46 @@ fn write(
             None => complaint::output(error.to_string()),
         }),
     }
+}
+
+// `--move`: the option of moves that is followed in a trial.
+
+/// The option of a name, with whose it is where several people have one of that name: `stop`, `user: stop`.
+///
+/// # Errors
+/// Where there is no such option, or several have the name.
+fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), Diagnostic> {
+    let wanted = name.trim();
+    let all = || {
+        let declarations = scenario.moves.iter().enumerate();
+        declarations
+            .flat_map(|(declaration, moves)| (0..moves.options.len()).map(move |at| (declaration, at)))
+    };
+    // A path is known by its number, too: its length depends on the roadmap.
+    let is_meant = |name: &str| {
+        name == wanted
+            || name.strip_prefix(wanted).is_some_and(|rest| wanted.contains("path") && rest.starts_with(" ("))
+    };
+    if let Some(found) = all().find(|of| scenario.move_name(*of).is_some_and(|name| is_meant(&name))) {
+        return Ok(found);
+    }
+    let label = |(declaration, at): (usize, usize)| scenario.moves[declaration].options[at].0.as_str();
+    let same: Vec<String> = all()
+        .filter(|of| is_meant(label(*of)))
+        .filter_map(|of| Some(format!("`{}`", scenario.move_name(of)?)))
+        .collect();
+    if !same.is_empty() {
+        return Err(complaint::argument(
+            format!("several agents have a move `{wanted}`"),
+            format!("write one of {}", same.join(", ")),
+        ));
+    }
+    let labels: Vec<String> = all().filter_map(|of| scenario.move_name(of)).collect();
+    let hint = match nearest(wanted, labels.iter().map(String::as_str)) {
+        _ if labels.is_empty() => "the scenario declares no moves".to_owned(),
+        // Of numbers that differ, none is meant more than another.
+        Some(near) if !wanted.contains(|c: char| c.is_ascii_digit()) => format!("did you mean `{near}`?"),
+        _ => format!("the moves are {}", labels.join(", ")),
+    };
+    Err(complaint::argument(format!("unknown move `{wanted}`"), hint))
 }

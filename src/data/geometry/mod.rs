@@ -13,7 +13,6 @@ pub mod geojson;
 pub mod indoor;
 pub mod placement;
 pub mod plan;
-pub mod ring;
 pub mod snap;
 pub mod wkt;
 

@@ -2,7 +2,6 @@
 //!
 //! Readers for BVH, for ASF/AMC and for CSV tables of positions. They take text, since the caller opens the files.
 
-mod amc;
 mod asf;
 mod bvh;
 mod layout;

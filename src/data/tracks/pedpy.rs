@@ -5,6 +5,7 @@ use super::line::{LineError, number, numbers, quoted};
 use super::recording::{Clock, Recording};
 use super::rows::{Row, agreed, people, usual_stride};
 use crate::base::geometry::{Vec2, coordinate_fault};
+use crate::base::math::median;
 
 const NAMES: [&str; 5] = ["id", "frame", "x", "y", "z"];
 
@@ -110,10 +111,7 @@ fn has_frames_first(rows: &[Row]) -> bool {
         let mut sorted: Vec<&Row> = rows.iter().collect();
         sorted.sort_unstable_by_key(|row| key(row));
         let pairs = sorted.windows(2).filter(|pair| key(pair[0]).0 == key(pair[1]).0);
-        let mut distances: Vec<f64> =
-            pairs.map(|pair| (pair[1].position - pair[0].position).norm()).collect();
-        distances.sort_unstable_by(f64::total_cmp);
-        distances.get(distances.len() / 2).copied()
+        median(pairs.map(|pair| (pair[1].position - pair[0].position).norm()))
     };
     let (ids, frames) = (apart(|row| (row.id, row.frame)), apart(|row| (row.frame, row.id)));
     ids.zip(frames).is_some_and(|(ids, frames)| ids > 2.0 * frames)

@@ -3,7 +3,7 @@
 
 use super::recording::{Person, Recording, Velocity};
 use crate::base::geometry::Vec2;
-use crate::base::math;
+use crate::base::math::{self, median};
 use std::ops::Range;
 
 /// An implausible number of a recording.
@@ -45,11 +45,6 @@ struct Going {
     told: Vec2,
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
-}
-
 /// The likely cause of a speed, with the distance to the nearest other person.
 fn cure_of_speed(speed: f64, apart: Option<f64>) -> String {
     let fits = |speed: f64, factor: f64| {
@@ -86,7 +81,7 @@ impl Recording {
         if going.iter().map(|one| one.rows).sum::<usize>() < ENOUGH {
             return None;
         }
-        let speed = median(going.iter().map(|one| one.way.norm() / one.seconds).collect())?;
+        let speed = median(going.iter().map(|one| one.way.norm() / one.seconds))?;
         let (step, apart) = (self.step(), self.apart());
         if !SPEEDS.contains(&speed) {
             let shown = if speed < 0.01 { format!("{speed:.1e}") } else { format!("{speed:.2}") };
@@ -102,9 +97,9 @@ impl Recording {
             let said = format!("the nearest other person is {apart:.3} m away in the median");
             return doubt(said, "check which columns are x and y, and their unit".to_owned());
         }
-        let wrong = going.iter().map(|one| (one.told - one.way).norm() / one.way.norm()).collect();
+        let wrong = going.iter().map(|one| (one.told - one.way).norm() / one.way.norm());
         if self.velocity() == Velocity::Recorded && median(wrong)? > 0.5 {
-            let way = |of: fn(&Going) -> Vec2| median(going.iter().map(|one| of(one).norm()).collect());
+            let way = |of: fn(&Going) -> Vec2| median(going.iter().map(|one| of(one).norm()));
             let (told, way) = (way(|one| one.told)?, way(|one| one.way)?);
             let said = format!(
                 "the velocities of the file would carry people {told:.2} m in the median, but they go {way:.2} m"

@@ -1,6 +1,6 @@
 //! How the values of a metric are distributed.
 
-use super::interval::Interval;
+use super::Interval;
 
 /// How the values of a metric are distributed.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! The outcome of a `rank`.
 
-use super::counts::Counts;
-use super::interval::Interval;
+use super::Counts;
+use super::Interval;
 
 /// The outcome of a `rank`.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,6 +5,7 @@ use super::Trace;
 use super::motion::{Membership, Motion, SPACING, Track, millimetres};
 use crate::base::decimal::Decimal;
 use crate::base::geometry::Vec2;
+use crate::base::math::median;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{Behaviours, Processes, Scenario, Scene};
 use std::sync::Arc;
@@ -81,10 +82,8 @@ pub fn recorded(title: &str, scene: Scene, walks: &[Walk]) -> Option<Trace> {
 /// The usual time between two observations of somebody, s.
 fn spacing(walks: &[Walk]) -> f64 {
     let pairs = walks.iter().flat_map(|walk| walk.points.windows(2).map(|pair| pair[1].0 - pair[0].0));
-    let mut times: Vec<f64> = pairs.filter(|time| *time > CLOSE).collect();
-    times.sort_by(f64::total_cmp);
-    let usual = times.get(times.len() / 2).map_or(SPACING, |time| (time * 1e6).round() / 1e6);
-    usual.max(SPACING)
+    let usual = median(pairs.filter(|time| *time > CLOSE));
+    usual.map_or(SPACING, |time| (time * 1e6).round() / 1e6).max(SPACING)
 }
 
 /// Where somebody is at a time.

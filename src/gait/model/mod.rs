@@ -7,7 +7,6 @@
 //! (`nearest`). `fit` puts them together, `person` draws, `file` writes and reads, `score` compares with steps
 //! that were held out.
 
-mod ascent;
 mod basis;
 mod columns;
 mod density;

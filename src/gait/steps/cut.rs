@@ -4,13 +4,14 @@
 //! moment at which it stands.
 
 use super::contact::{Contact, Support};
-use super::landmarks::{frame, root, shape};
-use super::signal::speed;
+use super::signal::{percentile, speed};
 use crate::base::geometry::{Vec2, cross};
 use crate::data::mocap::Take;
-use crate::gait::{Foot, Phase, RecordedStep};
+use crate::gait::{Curve, Foot, Phase, RecordedStep, SPANS, Shape};
+use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Range;
 
 /// Somebody stands whose root is slower than this, m/s, with both feet on the ground, for at least `STANDING_TIME`, s.
 const STANDING_SPEED: f64 = 0.2;
@@ -148,4 +149,84 @@ fn stands(take: &Take, supports: &[Support]) -> Vec<(f64, f64)> {
         .map(|part| (part[0] as f64 / take.fps, part[part.len() - 1] as f64 / take.fps))
         .filter(|(from, to)| to - from >= STANDING_TIME)
         .collect()
+}
+
+// The landmarks of a stretch of the root path.
+
+/// Landmarks between the two ends.
+const INNER: usize = SPANS - 1;
+
+/// The frame before a time, and the share of the way to the next one.
+fn frame(take: &Take, time: f64) -> (usize, f64) {
+    let last = take.root.len().saturating_sub(2);
+    let at = if time > 0.0 { time * take.fps } else { 0.0 };
+    let k = (at as usize).min(last);
+    (k, (at - k as f64).min(1.0))
+}
+
+/// The root at a time.
+fn root(take: &Take, time: f64) -> Vec2 {
+    let (k, share) = frame(take, time);
+    take.root[k] + (take.root[k + 1] - take.root[k]) * share
+}
+
+/// The curve that begins and ends where the root does, and is nearest to it in all frames between (least squares).
+fn shape(take: &Take, (from, to): (f64, f64)) -> Shape {
+    let duration = to - from;
+    let begin = root(take, from);
+    let at = |k: usize| root(take, from + duration * (k + 1) as f64 / SPANS as f64) - begin;
+    let mut shape = Shape { landmarks: std::array::from_fn(at), duration };
+    // The curve is linear in its landmarks: the errors of the samples are fitted with what each inner landmark adds.
+    let sampled = shape.curve();
+    let parts: [Curve; INNER] = std::array::from_fn(|k| {
+        let mut part = Shape { duration, ..Shape::default() };
+        part.landmarks[k].x = 1.0;
+        part.curve()
+    });
+    let mut normal = SMatrix::<f64, INNER, INNER>::zeros();
+    let mut sides = SMatrix::<f64, INNER, 2>::zeros();
+    for k in frame(take, from).0 + 1..=frame(take, to).0 {
+        let share = (k as f64 / take.fps - from) / duration;
+        let error = take.root[k] - begin - sampled.place(share);
+        let row = SVector::<f64, INNER>::from_fn(|part, _| parts[part].place(share).x);
+        normal += row * row.transpose();
+        sides += row * error.transpose();
+    }
+    // With too few frames there is no unique curve; the samples then are one.
+    if let Some(better) = normal.cholesky().map(|normal| normal.solve(&sides)) {
+        for (k, landmark) in shape.landmarks.iter_mut().take(INNER).enumerate() {
+            *landmark += Vec2::new(better[(k, 0)], better[(k, 1)]);
+        }
+    }
+    shape
+}
+
+// Whether a take can be one of a person who walks: the height of the hip, the feet and the steps.
+
+/// The height of the hip over the lower foot, m.
+const HIPS: Range<f64> = 0.6..1.3;
+/// The distance between ankle and toe, m.
+const FEET: Range<f64> = 0.05..0.45;
+/// The length of the steps, m.
+const STEPS: Range<f64> = 0.25..1.4;
+
+/// The median of a take that no person who walks has, and those of people.
+pub fn doubt(take: &Take, cut: &Result<Cut, NoSteps>) -> Option<String> {
+    let [left, right] = &take.feet;
+    let hip = |k: usize| {
+        let places = [left.ankle[k], left.toe[k], right.ankle[k], right.toe[k]];
+        take.hip[k] - places.iter().map(|place| place[2]).fold(f64::INFINITY, f64::min)
+    };
+    let feet = take.feet.iter().flat_map(|foot| foot.ankle.iter().zip(&foot.toe));
+    let feet = feet.map(|(a, t)| (0..3).map(|k| (a[k] - t[k]) * (a[k] - t[k])).sum::<f64>().sqrt());
+    let steps = cut.iter().flat_map(|cut| &cut.steps).map(|step| step.shape.curve().length());
+    let strange = |what: &str, all: &[f64], range: Range<f64>, usual: &str| {
+        let median = percentile(all, 0.5);
+        let is_strange = !all.is_empty() && !range.contains(&median);
+        is_strange.then(|| format!("its {what} {median:.3} m {usual} m are usual)"))
+    };
+    let (hips, feet): (Vec<f64>, Vec<f64>) = ((0..take.hip.len()).map(hip).collect(), feet.collect());
+    strange("hip is", &hips, HIPS, "high (0.7 to 1.2")
+        .or_else(|| strange("feet are", &feet, FEET, "long from ankle to toe (0.05 to 0.45"))
+        .or_else(|| strange("steps are", &steps.collect::<Vec<_>>(), STEPS, "long (0.3 to 1"))
 }

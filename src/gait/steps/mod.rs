@@ -3,8 +3,6 @@
 
 mod contact;
 mod cut;
-mod landmarks;
-mod plausible;
 mod report;
 mod signal;
 
@@ -13,7 +11,7 @@ mod signal;
 mod tests;
 
 pub use contact::Contact;
+pub use cut::doubt;
 pub use cut::{Cut, Dropped, NoSteps, cut};
-pub use plausible::doubt;
 pub(in crate::gait) use report::measures;
 pub use report::{report, write_drawn_steps, write_steps};

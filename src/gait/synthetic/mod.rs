@@ -13,13 +13,15 @@
 //! duration of the last step it knows how fast the root was moving sideways.
 
 mod noise;
-mod person;
-
-pub use person::Person;
+#[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
+mod tests;
 
 use super::step::{Draws, Foot, Gait, Shape, Stance};
 use crate::base::geometry::Vec2;
 use crate::base::math;
+use crate::base::random::{Stream, name_hash};
+use crate::model::{Family, Law};
 use noise::Noise;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -207,6 +209,30 @@ impl Gait for SyntheticGait {
     }
 }
 
-#[cfg(test)]
-#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
-mod tests;
+// What differs between people who walk (Weidmann 1993 for the speed; stature and step width of adults).
+
+/// What the gait of a person depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Person {
+    /// Stature, m.
+    pub height: f64,
+    /// Speed chosen on free ground, m/s.
+    pub speed: f64,
+    /// Distance between the feet across the direction of walking, m.
+    pub width: f64,
+}
+
+impl Person {
+    /// Draws a person. A height (m) or speed (m/s) that is given replaces the drawn one and changes no other draw.
+    pub fn draw(stream: Stream, height: Option<f64>, speed: Option<f64>) -> Self {
+        let drawn = |address: u64, mean, sd, low, high| {
+            let law = Law::Random { family: Family::Normal { mean, sd }, low, high };
+            law.draw(stream.uniform(address as u32))
+        };
+        Self {
+            height: height.unwrap_or_else(|| drawn(const { name_hash("gait height") }, 1.72, 0.09, 1.3, 2.2)),
+            speed: speed.unwrap_or_else(|| drawn(const { name_hash("gait speed") }, 1.34, 0.26, 0.5, 2.2)),
+            width: drawn(const { name_hash("gait width") }, 0.155, 0.03, 0.05, 0.3),
+        }
+    }
+}

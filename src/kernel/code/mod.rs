@@ -8,7 +8,6 @@
 //! agent that has left keeps its last position and numbers. Sums are ascending over agents. `min` and
 //! `max` of something that is no number are no number; comparisons with it are false.
 
-mod arithmetic;
 mod barriers;
 mod crowd;
 pub mod ground;

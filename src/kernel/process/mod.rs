@@ -10,19 +10,11 @@ mod commands;
 pub(super) mod delay;
 mod draws;
 mod embedded;
-mod joint;
 mod keys;
 mod space;
 mod step_batch;
 mod table;
 mod timed;
-mod view;
-
-pub use chain::Chain;
-pub use embedded::{Embedded, JumpBatch, Stay};
-pub use space::Space;
-pub use step_batch::StepBatch;
-pub use view::{View, ViewReadings};
 
 use super::code::{Code, Readings};
 pub use super::fault::Fault;
@@ -32,9 +24,16 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::tick::{Clock, Tick};
 use crate::model::{Bool, Domain, Num, Scenario};
+pub use chain::Chain;
 use commands::{Commands, Event};
 use draws::Draws;
+pub use embedded::{Embedded, JumpBatch, Stay};
 use fearless_simd::Level;
+use keys::Keys;
+pub use space::Space;
+use std::collections::BTreeSet;
+pub use step_batch::StepBatch;
+use table::MOST_ROWS;
 use table::Table;
 use timed::{Timed, is_timed};
 
@@ -322,4 +321,81 @@ fn ring(
     state.diverged |= lanes;
     state.clocks.jammed |= lanes;
     state.clocks.blame(&since, lanes);
+}
+
+// What monitors want to know of the states of a scenario in continuous time, trial by trial: a table where
+// it depends on few values of variables, else code over lanes.
+
+/// Truth values and numbers of a state.
+#[derive(Clone, Debug)]
+pub struct View {
+    keys: Option<Keys>,
+    code: Code,
+    /// Row by row, where there are keys.
+    atoms: Vec<bool>,
+    signals: Vec<f64>,
+    /// Number of atoms and of signals.
+    width: (usize, usize),
+}
+
+/// What was seen of the states of a batch.
+#[derive(Clone, Debug, Default)]
+pub struct ViewReadings {
+    readings: Readings,
+    atoms: Vec<bool>,
+    signals: Vec<f64>,
+}
+
+impl View {
+    /// Prepares to look at the states of a scenario of processes.
+    pub fn new(scenario: &Scenario, atoms: &[Bool], signals: &[Num]) -> Self {
+        let domains: Vec<Domain> = scenario.processes.variables.iter().map(|v| v.domain).collect();
+        let mut read = BTreeSet::new();
+        let closed = atoms.iter().fold(true, |so_far, atom| so_far & atom.reads(&mut read))
+            & signals.iter().fold(true, |so_far, signal| so_far & signal.reads(&mut read));
+        let mut view = Self {
+            keys: if closed { Keys::of(&read, &domains, MOST_ROWS) } else { None },
+            code: Code::compile(scenario, atoms, signals),
+            atoms: Vec::new(),
+            signals: Vec::new(),
+            width: (atoms.len(), signals.len()),
+        };
+        if let Some(keys) = &view.keys {
+            let (atoms, signals) = (&mut view.atoms, &mut view.signals);
+            keys.each_row(&view.code, domains.len(), |readings, lane| {
+                atoms.extend(readings.atoms.iter().map(|mask| mask.has(lane)));
+                signals.extend(readings.signals.iter().map(|lanes| lanes.0[lane]));
+                Some(())
+            });
+        }
+        view
+    }
+
+    /// Looks at the states of a batch.
+    #[inline]
+    pub fn look(&self, state: &State, seen: &mut ViewReadings) {
+        if self.keys.is_none() {
+            self.code.read(Layout::Trials, state, &mut seen.readings);
+        }
+    }
+
+    /// The atoms and signals of one lane, of a batch that was looked at.
+    #[inline]
+    pub fn of<'s>(
+        &'s self,
+        state: &State,
+        seen: &'s mut ViewReadings,
+        lane: usize,
+    ) -> (&'s [bool], &'s [f64]) {
+        let (atoms, signals) = self.width;
+        if let Some(keys) = &self.keys {
+            let row = keys.row(&state.variables, lane);
+            return (&self.atoms[row * atoms..][..atoms], &self.signals[row * signals..][..signals]);
+        }
+        seen.atoms.clear();
+        seen.atoms.extend(seen.readings.atoms.iter().map(|mask| mask.has(lane)));
+        seen.signals.clear();
+        seen.signals.extend(seen.readings.signals.iter().map(|lanes| lanes.0[lane]));
+        (&seen.atoms, &seen.signals)
+    }
 }

@@ -5,34 +5,26 @@
 //! trial k); in `Layout::Agents` it is eight agents of the only trial. All code that treats slots one by
 //! one (noise, integration) is the same for both.
 
-mod behaviours;
 mod bodies;
 mod clocks;
-mod driving;
-mod motion;
 mod passages;
 pub(super) mod plans;
 pub(super) mod progress;
-mod queues;
 pub(super) mod route;
 
-pub use super::layout::{Layout, Slot};
-pub(super) use behaviours::{ActiveModes, OWN_ROUTE};
-pub use bodies::Bodies;
-pub use clocks::Clocks;
-pub use driving::Driving;
-pub use motion::Motion;
-pub use passages::Passages;
-pub use plans::Plans;
-pub use progress::Progress;
-pub use queues::Queues;
-pub use route::{Routes, Way};
-
 use super::fault::Fault;
+pub use super::layout::{Layout, Slot};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
-use crate::model::{AgentId, Scenario};
+use crate::model::{AgentId, Scenario, Source};
+pub use bodies::Bodies;
+pub use clocks::Clocks;
+pub use passages::Passages;
+pub use plans::Plans;
+pub use progress::Progress;
+use route::Halt;
+pub use route::{Routes, Way};
 
 /// The moving state of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,5 +146,186 @@ impl State {
             Layout::Trials => LANES,
             Layout::Agents => 1,
         }
+    }
+}
+
+// The present states of behaviours, as part of the state of a batch of trials.
+
+/// In the place of the first stage of a detour: the agent is on its own route.
+pub(in crate::kernel) const OWN_ROUTE: u32 = u32::MAX;
+
+/// The present states of the behaviours of a batch, by declared behaviour and block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ActiveModes {
+    /// Number of the present state; -1 in someone who has no such behaviour.
+    pub modes: Vec<Vec<Lanes>>,
+    /// Tick at which the present state ends by itself; infinite if it does not.
+    pub(in crate::kernel) due: Vec<Vec<Lanes>>,
+    /// The transition that is taken then.
+    pub(in crate::kernel) exit: Vec<Vec<[u32; LANES]>>,
+    /// How many states have been entered.
+    pub(in crate::kernel) entered: Vec<Vec<[u32; LANES]>>,
+    /// What the present state set on entering it, SI units: so many values for each block as a state of the behaviour
+    /// sets at most, in order of writing.
+    pub(in crate::kernel) set: Vec<Vec<Lanes>>,
+    /// Under which key the parameters of an agent were drawn, by block.
+    pub(in crate::kernel) own_keys: Vec<[TrialKey; LANES]>,
+    /// First stage of a route that a state demands, and where the own route was left.
+    pub(in crate::kernel) detours: Vec<[(u32, Halt); LANES]>,
+}
+
+// The driving velocities of all agents: part of the state.
+
+/// Driving direction and speed of all slots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Driving {
+    /// Driving direction, a unit vector; it keeps its last value in an agent that stands. Zero in an agent that never had
+    /// a direction.
+    pub ex: Vec<Lanes>,
+    /// Driving direction, second component.
+    pub ey: Vec<Lanes>,
+    /// Driving speed at present, m/s: that of the body, or 0 in an agent that stands.
+    pub speed: Vec<Lanes>,
+    /// One over the largest driving speed that the headway to those ahead allows, s/m; 0 where nobody is. Kept from step to
+    /// step with the forces.
+    pub slowness: Vec<Lanes>,
+    /// Where an agent that stands came or comes to rest, m; infinite in one that does not stand.
+    pub rest_x: Vec<Lanes>,
+    /// The second coordinate.
+    pub rest_y: Vec<Lanes>,
+}
+
+impl Driving {
+    /// So many blocks that stand.
+    fn new(blocks: usize) -> Self {
+        let zero = || vec![Lanes::ZERO; blocks];
+        let nowhere = || vec![Lanes::splat(f64::INFINITY); blocks];
+        Self {
+            ex: vec![Lanes::splat(1.0); blocks],
+            ey: zero(),
+            speed: zero(),
+            slowness: zero(),
+            rest_x: nowhere(),
+            rest_y: nowhere(),
+        }
+    }
+
+    /// An agent that stands.
+    pub(in crate::kernel) fn clear(&mut self, slot: Slot) {
+        for (field, value) in
+            [(&mut self.ex, 1.0), (&mut self.ey, 0.0), (&mut self.speed, 0.0), (&mut self.slowness, 0.0)]
+        {
+            field[slot.block].0[slot.lane] = value;
+        }
+        self.move_on(slot);
+    }
+
+    /// An agent that is no longer where it stood.
+    pub(in crate::kernel) fn move_on(&mut self, slot: Slot) {
+        for field in [&mut self.rest_x, &mut self.rest_y] {
+            field[slot.block].0[slot.lane] = f64::INFINITY;
+        }
+    }
+}
+
+// Where all agents are and how they move: part of the state.
+
+/// Positions, velocities and forces of all slots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Position, m.
+    pub x: Vec<Lanes>,
+    /// Position, second coordinate, m.
+    pub y: Vec<Lanes>,
+    /// Velocity, m/s.
+    pub vx: Vec<Lanes>,
+    /// Velocity, second component, m/s.
+    pub vy: Vec<Lanes>,
+    /// Force of everything but contact at the present positions, N; kept from step to step.
+    pub fx: Vec<Lanes>,
+    /// Force, second component, N.
+    pub fy: Vec<Lanes>,
+    /// Length of the way gone, m.
+    pub travelled: Vec<Lanes>,
+}
+
+impl Motion {
+    /// So many blocks at rest in the origin.
+    fn new(blocks: usize) -> Self {
+        let zero = || vec![Lanes::ZERO; blocks];
+        Self { x: zero(), y: zero(), vx: zero(), vy: zero(), fx: zero(), fy: zero(), travelled: zero() }
+    }
+
+    /// At rest in the origin.
+    pub(in crate::kernel) fn clear(&mut self, slot: Slot) {
+        let Self { x, y, vx, vy, fx, fy, travelled } = self;
+        for field in [x, y, vx, vy, fx, fy, travelled] {
+            field[slot.block].0[slot.lane] = 0.0;
+        }
+    }
+}
+
+// How far the sources of people are, as part of the state of a batch of trials.
+
+/// How far the sources of a batch are; lanes are trials in both layouts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Queues {
+    /// Time of the next arrival of each source, s.
+    pub(in crate::kernel) next: Vec<Lanes>,
+    /// How many have arrived.
+    pub(in crate::kernel) arrived: Vec<[u32; LANES]>,
+    /// How many have come in.
+    pub entered: Vec<[u32; LANES]>,
+    /// How often the next one has tried to come in.
+    pub(in crate::kernel) tries: Vec<[u32; LANES]>,
+    /// Per agent: how many numbers its person is behind the first one on its place. Empty without sources.
+    pub(in crate::kernel) later: Vec<[u32; LANES]>,
+    /// Lanes in which a place was given to a second person.
+    pub reused: Mask,
+    /// Lanes in which more have arrived than there is room for: the trial is unresolved.
+    pub full: Mask,
+    /// Which source that was.
+    pub(in crate::kernel) which: [u32; LANES],
+}
+
+impl Queues {
+    /// The lanes in which member `number` of a source, counted from 0, has come in.
+    pub fn has_entered(&self, source: usize, number: u32) -> Mask {
+        let Some(entered) = self.entered.get(source) else { return Mask::NONE };
+        let here = entered.iter().enumerate().filter(|(_, entered)| **entered > number);
+        here.fold(Mask::NONE, |mask, (lane, _)| mask | Mask::lane(lane))
+    }
+
+    /// Why the trial in a lane is unresolved, if a source is the reason.
+    pub fn overrun(&self, sources: &[Source], lane: usize) -> Option<String> {
+        let source = sources.get(self.which[lane] as usize).filter(|_| self.full.has(lane))?;
+        let (count, name) = (source.members.len(), &source.name);
+        let words =
+            if self.reused.has(lane) { "are present at once from source" } else { "arrived by source" };
+        Some(format!("more than {count} agents {words} `{name}`; write a larger `limit`"))
+    }
+
+    /// Why a question that follows single people has no answer in the trial of a lane, if that is the reason.
+    pub fn lost_sight(&self, sources: &[Source], lane: usize) -> Option<String> {
+        let source = sources.get(self.which[lane] as usize).filter(|_| self.reused.has(lane))?;
+        let (count, name) = (source.members.len(), &source.name);
+        Some(format!(
+            "more than {} arrived by source `{name}`, and the formula follows single agents of it; write a larger `limit`",
+            if count == 1 { "1 agent".to_owned() } else { format!("{count} agents") }
+        ))
+    }
+
+    /// The name of the person on a place of a source, if it is not the first one there: `doors[57]`.
+    pub fn arrival(&self, sources: &[Source], agent: AgentId, lane: usize) -> Option<String> {
+        let later = self.later(agent.0 as usize, lane);
+        let source = sources.iter().find(|source| later > 0 && source.members.contains(&agent))?;
+        let place = source.members.iter().position(|member| *member == agent)?;
+        Some(format!("{}[{}]", source.name, place as u32 + later + 1))
+    }
+
+    /// How many numbers the person on an agent's place is behind the first one there; 0 but for places of sources.
+    #[inline]
+    pub fn later(&self, agent: usize, lane: usize) -> u32 {
+        self.later.get(agent).map_or(0, |later| later[lane])
     }
 }

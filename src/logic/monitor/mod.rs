@@ -15,8 +15,6 @@ mod plan;
 pub mod robustness;
 mod step;
 mod track;
-mod until;
-mod window;
 
 use super::formula::{NodeId, TermId, Tree};
 use super::invalid::Invalid;

@@ -1,17 +1,16 @@
 //! Inferred traces and groups as data and as pictures: `smc infer`.
 
-mod csv;
-mod json;
 mod page;
-mod svg;
 
-pub use csv::to_csv;
-pub use json::to_json;
-pub use page::to_page;
-pub use svg::to_svg;
-
+use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::data::tracks::Velocity;
-use crate::perception::{Inference, Inferring};
+use crate::perception::{Birth, Death, Group, Inference, InferredTrace, Inferring, Padding};
+use crate::report::number::thousandths;
+use crate::report::svg::{Drawing, Ink};
+pub use page::to_page;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// What was inferred from a file, and how.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +29,137 @@ pub struct InferredFile<'a> {
     pub options: &'a Inferring,
     /// Its result.
     pub inference: &'a Inference,
+}
+
+// Inferred points as CSV, one row a point; what is unknown is empty.
+
+/// `time,trace,group,x,y,vx,vy,id`, by time and trace, in SI units, with three decimals.
+pub fn to_csv(inference: &Inference) -> String {
+    let mut text = "time,trace,group,x,y,vx,vy,id\n".to_owned();
+    for one in &inference.points {
+        let (time, p) = (thousandths(one.point.time), one.point.position.map(thousandths));
+        let velocity = one.point.velocity.map(|v| v.map(thousandths));
+        let velocity = velocity.map_or_else(|| ",".to_owned(), |v| format!("{},{}", v.x, v.y));
+        let id = one.person.map_or_else(String::new, |id| id.to_string());
+        let _ = writeln!(text, "{time},{},{},{},{},{velocity},{id}", one.trace, one.group, p.x, p.y);
+    }
+    text
+}
+
+// Inferred traces and groups as one JSON object.
+
+/// Version of the form of this object.
+const SCHEMA: u32 = 1;
+
+/// File, parameters, intervals, traces, groups and scores. Times, places and velocities have three decimals.
+pub fn to_json(report: &InferredFile) -> String {
+    let (options, found) = (report.options, report.inference);
+    let (tracking, clustering) = (options.tracking, options.clustering);
+    let all = json!({
+        "schema": SCHEMA,
+        "file": report.file,
+        "velocity": report.velocity.name(),
+        "parameters": {
+            "motion": report.motion,
+            "kind": report.kind,
+            "scene": report.scene,
+            "anonymous": options.is_anonymous,
+            "threshold": tracking.threshold,
+            "projection": tracking.longest,
+            "discount": tracking.discount,
+            "padding": match tracking.padding { Padding::Printed => "printed", Padding::Gated => "gated" },
+            "waiting": tracking.waiting,
+            "sensors_within": tracking.sensors_within,
+            "cohesion": clustering.threshold,
+            "position_discount": clustering.position_discount,
+            "velocity_discount": clustering.velocity_discount,
+            "seed": options.key.seed,
+        },
+        "intervals": found.intervals.iter().map(|(from, to)| [*from, *to].map(thousandths)).collect::<Vec<_>>(),
+        "traces": found.traces.iter().map(trace).collect::<Vec<_>>(),
+        "groups": found.groups.iter().map(group).collect::<Vec<_>>(),
+        "score": { "tracks": found.tracks, "groups": found.score },
+    });
+    format!("{all}\n")
+}
+
+fn trace(one: &InferredTrace) -> Value {
+    let points = one.trace.points.iter().map(|point| {
+        let (p, v) = (point.position.map(thousandths), point.velocity.map(|v| v.map(thousandths)));
+        json!([thousandths(point.time), p.x, p.y, v.map(|v| v.x), v.map(|v| v.y)])
+    });
+    json!({
+        "id": one.trace.number,
+        "from": thousandths(one.trace.since),
+        "to": thousandths(one.trace.end().time),
+        "points": points.collect::<Vec<_>>(),
+        "people": one.people,
+    })
+}
+
+fn group(one: &Group) -> Value {
+    let (born, of) = match one.born {
+        Birth::Appear => ("appear", None),
+        Birth::Split(of) => ("split", Some(of)),
+    };
+    let (ended, into) = match one.ended {
+        Death::Leave => ("leave", None),
+        Death::Merge(into) => ("merge", Some(into)),
+    };
+    let members = one.members.iter().map(|member| {
+        let (from, to) = (thousandths(member.from), thousandths(member.to));
+        json!({ "trace": member.trace, "from": from, "to": to })
+    });
+    json!({
+        "id": one.number,
+        "from": thousandths(one.from),
+        "to": thousandths(one.to),
+        "born": born,
+        "of": of,
+        "ended": ended,
+        "into": into,
+        "members": members.collect::<Vec<_>>(),
+    })
+}
+
+// Inferred traces and groups as a picture, as Figures 3 to 6 of Given-Wilson, Legay, Sedwards, Zendra 2017: traces
+// black, their starts blue, their ends red, and at each instant a circle for each group, sized by its members.
+
+/// Radius of the circle of one person, m; it grows with the root of the number.
+const RADIUS: f64 = 0.2;
+
+/// The picture.
+pub fn to_svg(report: &InferredFile) -> String {
+    let found = report.inference;
+    let places = found.points.iter().map(|one| one.point.position);
+    let low = places.clone().fold(Vec2::repeat(f64::INFINITY), |a, p| a.inf(&p));
+    let high = places.fold(Vec2::repeat(f64::NEG_INFINITY), |a, p| a.sup(&p));
+    let bounds = if found.points.is_empty() {
+        Bounds { low: Vec2::zeros(), high: Vec2::repeat(1.0) }
+    } else {
+        Bounds { low: low - Vec2::repeat(0.5), high: high + Vec2::repeat(0.5) }
+    };
+    let mut drawing = Drawing::new(bounds);
+    for instant in found.points.chunk_by(|a, b| a.point.time == b.point.time) {
+        let mut groups = BTreeMap::<u64, (Vec2, f64)>::new();
+        for one in instant {
+            let (sum, count) = groups.entry(one.group).or_insert((Vec2::zeros(), 0.0));
+            *sum += one.point.position;
+            *count += 1.0;
+        }
+        for (sum, count) in groups.into_values() {
+            drawing.shape(&Shape::Circle { centre: sum / count, radius: RADIUS * count.sqrt() }, Ink::GROUP);
+        }
+    }
+    for one in &found.traces {
+        let points: Vec<Vec2> = one.trace.points.iter().map(|point| point.position).collect();
+        drawing.line(&points, Ink::TRACE);
+        if let (Some(first), Some(last)) = (points.first(), points.last()) {
+            drawing.dot(*first, Ink::TRACE_START);
+            drawing.dot(*last, Ink::TRACE_END);
+        }
+    }
+    drawing.finish(&format!("Traces and groups of {} ({} velocities)", report.file, report.velocity.name()))
 }
 
 #[cfg(test)]

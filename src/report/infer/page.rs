@@ -1,6 +1,7 @@
 //! Inferred traces and groups as a page: tables of counts and scores, and a player in which groups have colours.
 
 use super::InferredFile;
+use crate::base::math::median;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::{Traces, Walk, recorded};
 use crate::model::Scene;
@@ -53,10 +54,8 @@ fn row(name: &str, value: String) -> Vec<String> {
 }
 
 fn counts(found: &Inference) -> Table {
-    let mut lengths: Vec<f64> =
-        found.traces.iter().map(|one| one.trace.end().time - one.trace.since).collect();
-    lengths.sort_by(f64::total_cmp);
-    let middle = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
+    let lengths = found.traces.iter().map(|one| one.trace.end().time - one.trace.since);
+    let middle = median(lengths).unwrap_or(0.0);
     let joint = found.groups.iter().filter(|group| group.members.len() > 1).count();
     let largest = found.groups.iter().map(|group| group.members.len()).max().unwrap_or(0);
     let whole = |number: usize| count(number as u64);

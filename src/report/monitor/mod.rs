@@ -1,17 +1,17 @@
 //! Properties of recorded people: `smc monitor`.
 
-mod csv;
-mod json;
-mod property;
-mod text;
-
-pub use csv::write_csv;
-pub use json::to_json;
-pub use property::MonitoredProperty;
-pub use text::to_text;
+#[cfg(test)]
+mod tests;
 
 use crate::data::tracks::Velocity;
 use crate::replay::Beyond;
+use crate::report::number::{count, counted, estimated, plain, thousandths};
+use crate::report::text::columns::table;
+use crate::stats::bootstrap::{Bootstrap, DRAWS, Estimate, ratio};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io;
 
 /// Properties on a recording, and how they were read.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,5 +71,156 @@ impl InstantVerdict {
     }
 }
 
-#[cfg(test)]
-mod tests;
+// Monitored properties as CSV, one row an instant of a person.
+
+/// `time,person` and a column for each property: `true`, `false` or `unresolved`. Times are to 1 ms.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_csv(out: impl io::Write, report: &Monitored) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let names = report.results.iter().map(|one| one.name.as_str());
+    table.write_record(["time", "person"].into_iter().chain(names))?;
+    for one in &report.instants {
+        let cells = [thousandths(one.time).to_string(), one.person.to_string()];
+        let verdicts = one.verdicts.iter().map(|verdict| verdict.name());
+        table.write_record(cells.iter().map(String::as_str).chain(verdicts))?;
+    }
+    table.flush()
+}
+
+// One property over all instants of a recording.
+
+/// How often a property was satisfied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MonitoredProperty {
+    /// Its name.
+    pub name: String,
+    /// Number of instants at which it is satisfied.
+    pub satisfied: u64,
+    /// Number of instants at which it is violated.
+    pub violated: u64,
+    /// Number of instants at which it is unresolved.
+    pub unresolved: u64,
+    /// The reasons of unresolved instants, with their numbers.
+    pub reasons: BTreeMap<&'static str, u64>,
+    /// Number of persons with an instant.
+    pub persons: u64,
+    /// Share of satisfied among resolved instants, with an interval over persons; `None` if no instant is resolved.
+    pub share: Option<Estimate>,
+}
+
+impl MonitoredProperty {
+    /// The summary of property number `index`.
+    pub fn of(name: &str, index: usize, instants: &[MonitoredInstant], confidence: f64) -> Self {
+        let mut parts = BTreeMap::<u32, [f64; 2]>::new();
+        let mut reasons = BTreeMap::new();
+        let (mut satisfied, mut violated, mut unresolved) = (0, 0, 0);
+        for instant in instants {
+            let [yes, resolved] = parts.entry(instant.person).or_default();
+            match instant.verdicts.get(index) {
+                Some(InstantVerdict::True) => {
+                    satisfied += 1;
+                    *yes += 1.0;
+                    *resolved += 1.0;
+                }
+                Some(InstantVerdict::False) => {
+                    violated += 1;
+                    *resolved += 1.0;
+                }
+                Some(InstantVerdict::Unresolved(reason)) => {
+                    unresolved += 1;
+                    *reasons.entry(*reason).or_default() += 1;
+                }
+                None => {}
+            }
+        }
+        let parts: Vec<[f64; 2]> = parts.into_values().collect();
+        let bootstrap = Bootstrap { persons: parts.len(), draws: DRAWS, seed: 0, confidence };
+        let share = bootstrap.estimate(ratio(&parts));
+        let (name, persons) = (name.to_owned(), parts.len() as u64);
+        Self { name, satisfied, violated, unresolved, reasons, persons, share }
+    }
+
+    /// Number of instants.
+    pub const fn instants(&self) -> u64 {
+        self.satisfied + self.violated + self.unresolved
+    }
+}
+
+// Monitored properties for people.
+
+/// A table with a row for each property, and why instants are unresolved.
+pub fn to_text(report: &Monitored) -> String {
+    let mut out = String::new();
+    let Monitored { model, recording, every, confidence, .. } = report;
+    let user = report
+        .user
+        .map_or_else(|| "each person is the user in turn".to_owned(), |id| format!("user: person {id}"));
+    let beyond = match report.beyond {
+        Beyond::Unresolved => "nothing is assumed",
+        Beyond::Onward => "people go straight on",
+    };
+    let _ = writeln!(
+        out,
+        "{recording} ({} velocities), {model}, {}",
+        report.velocity.name(),
+        report.properties.join(", ")
+    );
+    let _ = writeln!(out, "{user}, every {} s; after the end of a track: {beyond}\n", plain(*every));
+    let rows = report.results.iter().map(|one| {
+        let [satisfied, violated, unresolved, persons] =
+            [one.satisfied, one.violated, one.unresolved, one.persons].map(count);
+        let share = one.share.as_ref().map_or_else(|| "-".to_owned(), |share| estimated(share, ""));
+        [one.name.clone(), satisfied, violated, unresolved, persons, share]
+    });
+    let heads = ["property", "satisfied", "violated", "unresolved", "persons", "share satisfied"];
+    table(&mut out, "", heads, rows.collect());
+    let _ = writeln!(
+        out,
+        "\nshare satisfied: of the resolved instants, with a {} % interval (bootstrap over persons)",
+        plain(100.0 * confidence)
+    );
+    for one in &report.results {
+        for (reason, number) in one.reasons.iter().filter(|(reason, _)| !reason.is_empty()) {
+            let _ = writeln!(out, "{}: {} unresolved: {reason}", one.name, counted(*number, "instant"));
+        }
+    }
+    out
+}
+
+// Monitored properties as one JSON object, without their instants; `docs/schema/monitor.schema.json` describes it.
+
+/// Version of the form of this object.
+const SCHEMA: u32 = 1;
+
+/// Files, options, and a result for each property.
+pub fn to_json(report: &Monitored) -> String {
+    let all = json!({
+        "schema": SCHEMA,
+        "model": report.model,
+        "properties": report.properties,
+        "recording": report.recording,
+        "velocity": report.velocity.name(),
+        "user": report.user,
+        "every": report.every,
+        "beyond": report.beyond.name(),
+        "confidence": report.confidence,
+        "results": report.results.iter().map(result).collect::<Vec<_>>(),
+    });
+    format!("{all:#}\n")
+}
+
+fn result(one: &MonitoredProperty) -> Value {
+    let reasons = one.reasons.iter().map(|(reason, count)| json!({ "reason": reason, "count": count }));
+    json!({
+        "name": one.name,
+        "satisfied": one.satisfied,
+        "violated": one.violated,
+        "unresolved": one.unresolved,
+        "unresolved_because": reasons.collect::<Vec<_>>(),
+        "instants": one.instants(),
+        "persons": one.persons,
+        "share": one.share,
+    })
+}

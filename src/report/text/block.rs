@@ -1,12 +1,16 @@
 //! The block of one result.
 
+use super::columns::Cell;
+use super::rows;
 use super::rows::{MARGIN, line, printed};
-use super::{compare, distribution, rank};
 use crate::engine::at_most;
-use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shortfall, Shows, Stop, Verdict, Witness};
-use crate::report::number::{clock, count, counted, duration, interval, plain, some};
+use crate::engine::outcome::{
+    Comparison, Distribution, Histogram, Interval, Kind, QueryResult, Ranking, Rare, Shortfall, Shows, Side,
+    Stop, Verdict, Witness,
+};
+use crate::report::number::{brief, clock, count, counted, duration, interval, plain, readable, some};
 use crate::report::palette::{Paint, Palette};
-use crate::report::phrase::{certified, one_line, settings};
+use crate::report::phrase::{certified, endless, one_line, settings};
 use std::fmt::Write as _;
 
 /// Writes the block of one result.
@@ -17,9 +21,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
         line(text, &format!("where {with}"));
     }
     if let Some(ranking) = &result.rank {
-        rank::write(text, result, ranking, palette);
+        write_ranking(text, result, ranking, palette);
     } else if let Some(comparison) = &result.compare {
-        compare::write(text, result, comparison, palette);
+        write_comparison(text, result, comparison, palette);
     } else {
         value(text, result, palette);
     }
@@ -37,7 +41,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     }
     method(text, result, palette);
     if let Some(found) = &result.distribution {
-        distribution::write(text, result, found, palette);
+        write_distribution(text, result, found, palette);
     }
     remarks(text, result, "", palette);
     for witness in &result.witnesses {
@@ -252,5 +256,147 @@ pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: P
     );
     if !command.is_empty() {
         line(text, &palette.paint(Paint::Faint, &format!("  {command}")));
+    }
+}
+
+// The block of a comparison: both sides and the difference.
+
+/// Writes the lines under the head.
+fn write_comparison(text: &mut String, result: &QueryResult, comparison: &Comparison, palette: Palette) {
+    let Comparison { first, second, difference } = comparison;
+    if difference.counts.trials == 0 {
+        rows::line(text, "nothing was sampled");
+        return;
+    }
+    let row = |side: &Side, paint: Option<Paint>, noun: &str, remark: String| {
+        let (estimate, interval) = rows::printed(result, &side.value);
+        let estimate = Cell::left(estimate);
+        vec![
+            Cell::left(side.label.clone()),
+            match paint {
+                Some(paint) => estimate.paint(paint),
+                None => estimate,
+            },
+            Cell::left(interval),
+            Cell::right(counted(side.counts.trials, noun)),
+            Cell::left(remark),
+        ]
+    };
+    let unresolved = |n: u64| some(n, "unresolved");
+    let counts = difference.counts;
+    let mut pairs = String::new();
+    if counts.successes + counts.failures > 0 {
+        pairs = format!(
+            "only the first holds {}, only the second {}",
+            count(counts.successes),
+            count(counts.failures)
+        );
+    }
+    let rows = [
+        row(first, None, "trial", unresolved(first.counts.unresolved)),
+        row(second, None, "trial", unresolved(second.counts.unresolved)),
+        row(difference, Some(Paint::Strong), "pair", pairs),
+    ];
+    rows::table(text, &rows, palette);
+    rows::intervals(text, result, palette);
+}
+
+// The block of a ranking: the choice, what is certified of it, and all options, best first.
+
+/// Writes the lines under the head.
+fn write_ranking(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
+    let Some(choice) = &ranking.choice else {
+        let sampled = result.consumed.counts.trials > 0;
+        let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
+        rows::line(text, &format!("no choice: {why}"));
+        return;
+    };
+    let choice = palette.paint(Paint::Good, choice);
+    let mut said = if result.certifies.is_empty() {
+        format!("{choice} is best so far, but nothing is certified")
+    } else {
+        format!("choose {choice}")
+    };
+    if ranking.tied {
+        said += "; options marked tied have the same certificate";
+    }
+    rows::line(text, &said);
+    let rows: Vec<Vec<Cell>> = ranking
+        .options
+        .iter()
+        .map(|option| {
+            let (estimate, interval) = rows::printed(result, &option.value);
+            vec![
+                Cell::left(option.label.clone()),
+                Cell::left(estimate),
+                Cell::left(interval),
+                Cell::right(counted(option.counts.trials, "trial")),
+                Cell::left(option.status.name()).paint(option.status.into()),
+                Cell::left(some(option.counts.unresolved, "unresolved")),
+            ]
+        })
+        .collect();
+    rows::table(text, &rows, palette);
+    rows::intervals(text, result, palette);
+}
+
+// How the values of a metric are distributed: quantiles, and a histogram in one line.
+
+const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// Writes the lines of a distribution.
+fn write_distribution(text: &mut String, result: &QueryResult, found: &Distribution, palette: Palette) {
+    let (unit, size) = readable(&result.unit, result.estimate.unwrap_or(result.low));
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    // A single one is what was estimated, and stands above.
+    if found.quantiles.len() > 1 {
+        let parts: Vec<String> = found
+            .quantiles
+            .iter()
+            .map(|q| {
+                let Interval { estimate, low, high } = q.value;
+                let value = Interval { estimate: estimate / size, low: low / size, high: high / size };
+                let horizon = result.censored.map(|horizon| horizon / size);
+                format!("{} %: {}{unit}", plain(100.0 * q.level), interval(&value, horizon).estimate)
+            })
+            .collect();
+        rows::line(text, &format!("quantiles {}", parts.join(", ")));
+    }
+    if let Some(histogram) = &found.histogram {
+        let bars = palette.paint(Paint::Neutral, &bars(histogram));
+        let [low, high] = [histogram.low, histogram.high].map(|end| brief(end / size));
+        let mut said = format!("{low}{unit} {bars} {high}{unit}");
+        if histogram.below > 0 {
+            said = format!("{} at -∞, {said}", count(histogram.below));
+        }
+        if histogram.beyond > 0 {
+            said = format!("{said}, {} {}", count(histogram.beyond), endless(result));
+        }
+        if let Some(band) = found.band {
+            said = format!("{said}, distribution function to ± {}", plain((band * 1000.0).ceil() / 1000.0));
+        }
+        rows::line(text, &said);
+    }
+}
+
+/// One bar per bin; an empty bin is a dot, the fullest has full height.
+fn bars(histogram: &Histogram) -> String {
+    let most = histogram.counts.iter().copied().max().unwrap_or(0).max(1);
+    histogram
+        .counts
+        .iter()
+        .map(|&n| if n == 0 { '·' } else { BARS[((n as f64 / most as f64) * 7.0).round() as usize] })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_bin_shows() {
+        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![0, 1, 100, 50], below: 0, beyond: 0 };
+        assert_eq!(bars(&histogram), "·▁█▅");
+        assert_eq!(bars(&Histogram { counts: vec![], ..histogram }), "");
     }
 }

@@ -1,17 +1,17 @@
 //! Walks of simulated agents, leg by leg, as tables, traces and a picture: `smc walk`.
 
-mod picture;
-mod traces;
-
-pub use picture::draw;
-pub use traces::write_traces;
-
 use crate::base::geometry::Vec2;
+use crate::data::table::{CSV, Column, Kind, Table, Value, write};
 use crate::gait::Foot;
+use crate::model::Scenario;
+use crate::report::number::count;
+use crate::report::svg::{Ink, plan};
 use crate::stats::twosample::Summary;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io;
+use std::io::Write;
 
 /// An agent in one state of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +81,7 @@ impl WalkedLeg {
     }
 
     /// The row of a table, with the names of its columns; null where there is no number.
-    fn row(&self, trials: u64) -> Map<String, Value> {
+    fn row(&self, trials: u64) -> Map<String, serde_json::Value> {
         let [from, to] = &self.ends;
         let count = self.walks.len() as u64;
         let names = ["agent", "leg", "from", "to", "walks", "unfinished"];
@@ -160,12 +160,13 @@ pub fn to_json(walked: &Walked) -> String {
 /// Errors of the writer.
 pub fn write_csv(out: impl io::Write, walked: &Walked) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    let cell = |value: Value| match value {
-        Value::Null => String::new(),
-        Value::String(text) => text,
+    let cell = |value: serde_json::Value| match value {
+        serde_json::Value::Null => String::new(),
+        serde_json::Value::String(text) => text,
         number => number.to_string(),
     };
-    let rows: Vec<Map<String, Value>> = walked.legs.iter().map(|leg| leg.row(walked.trials)).collect();
+    let rows: Vec<Map<String, serde_json::Value>> =
+        walked.legs.iter().map(|leg| leg.row(walked.trials)).collect();
     if let Some(first) = rows.first() {
         table.write_record(first.keys())?;
     }
@@ -173,4 +174,112 @@ pub fn write_csv(out: impl io::Write, walked: &Walked) -> io::Result<()> {
         table.write_record(row.into_iter().map(|(_, value)| cell(value)))?;
     }
     table.flush()
+}
+
+// A picture of many walks: all of them as thin lines, and cells that are the darker the more walks pass them.
+
+/// Side of a cell, m.
+const SIDE: f64 = 0.1;
+
+/// Points of a drawn walk are at least so far apart, m.
+const APART: f64 = 0.05;
+
+fn cell(p: Vec2) -> (i64, i64) {
+    ((p.x / SIDE).floor() as i64, (p.y / SIDE).floor() as i64)
+}
+
+/// The points of a walk that are drawn.
+fn thinned(points: &[Vec2]) -> Vec<Vec2> {
+    let mut drawn: Vec<Vec2> = Vec::new();
+    for point in points {
+        if drawn.last().is_none_or(|last| (point - last).norm() >= APART) {
+            drawn.push(*point);
+        }
+    }
+    drawn.extend(points.last());
+    drawn
+}
+
+/// The picture as SVG.
+pub fn draw(scenario: &Scenario, walked: &Walked) -> String {
+    let walks = walked.legs.iter().flat_map(|leg| &leg.walks);
+    let walks: Vec<Vec<Vec2>> =
+        walks.map(|walk| walk.places.iter().map(|place| place.position).collect()).collect();
+    let mut passed = BTreeMap::<(i64, i64), u64>::new();
+    for walk in &walks {
+        for cell in walk.iter().map(|point| cell(*point)).collect::<BTreeSet<_>>() {
+            *passed.entry(cell).or_default() += 1;
+        }
+    }
+    let most = passed.values().copied().max().unwrap_or(1);
+    let mut drawing = plan::drawn(scenario, walks.iter().flatten().copied());
+    for ((x, y), walks) in passed {
+        drawing.cell(Vec2::new(x as f64, y as f64) * SIDE, SIDE, walks as f64 / most as f64);
+    }
+    for walk in walks.iter().filter(|walk| walk.len() > 1) {
+        drawing.line(&thinned(walk), Ink::WALK);
+    }
+    plan::name_places(&mut drawing, scenario);
+    let (all, most) = (count(walks.len() as u64), count(most));
+    drawing.note(&format!("{all} walks; cells of {SIDE} m, the darkest is passed by {most}"));
+    drawing.finish(if walked.title.is_empty() { "walks" } else { &walked.title })
+}
+
+// Traces of walks as `smc compare-walks` reads them, at any rate: between two states the line between them.
+
+/// Rows nearer to the end of a walk than this give way to the end, s.
+const NEAR: f64 = 1e-5;
+
+/// The columns: time from the beginning of the leg, direction from +x to the left.
+const COLUMNS: [(&str, Kind); 8] = [
+    ("walk", Kind::Word),
+    ("leg", Kind::Word),
+    ("t", Kind::Number("s")),
+    ("x", Kind::Number("m")),
+    ("y", Kind::Number("m")),
+    ("heading", Kind::Number("deg")),
+    ("foot", Kind::Word),
+    ("step", Kind::Whole),
+];
+
+/// `walk,leg,t,x,y,heading,foot,step` at so many rows a second and at the end of each leg, times and places to 1e-5.
+/// Walks that take no time are left out; their number is returned.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_traces(out: &mut dyn Write, walked: &Walked, rate: f64) -> io::Result<u64> {
+    let columns = COLUMNS.map(|(name, kind)| Column::new(name, kind)).to_vec();
+    let is_alone = walked.agents().count() == 1;
+    let walks = || walked.legs.iter().flat_map(|leg| leg.walks.iter().map(move |walk| (leg, walk)));
+    let lasts = |places: &[Place]| walked.dt * places.len().saturating_sub(1) as f64;
+    let rows = walks().filter(|(_, walk)| lasts(&walk.places) > 0.0).flat_map(|(leg, walk)| {
+        let name =
+            |number: u64| if is_alone { number.to_string() } else { format!("{} {number}", leg.agent) };
+        let names = [name(walk.trial), name(leg.number as u64)];
+        let end = lasts(&walk.places);
+        let times = (0_u64..).map(move |k| k as f64 / rate).take_while(move |t| *t < end - NEAR).chain([end]);
+        times.map(move |t| {
+            let names = names.clone().map(|name| Value::Word(name.into()));
+            names.into_iter().chain(row(&walk.places, t, walked.dt)).collect()
+        })
+    });
+    write(&CSV, out, &Table { columns, ..Table::default() }, rows)?;
+    Ok(walks().filter(|(_, walk)| lasts(&walk.places) <= 0.0).count() as u64)
+}
+
+/// What is after the names: time, place, direction and step.
+fn row(places: &[Place], t: f64, dt: f64) -> [Value<'static>; 6] {
+    let before = ((t / dt) as usize).min(places.len() - 2);
+    let (a, b) = (places[before], places[before + 1]);
+    let at = a.position + (b.position - a.position) * (t / dt - before as f64);
+    // The quotient of whole numbers is the double nearest to the decimal.
+    let rounded = |number: f64, steps: f64| Value::Number((number * steps).round() / steps);
+    let (foot, step) = match a.step {
+        Some((foot, step)) => {
+            let foot = if foot == Foot::Left { "left" } else { "right" };
+            (Value::Word(foot.into()), Value::Whole(i64::from(step)))
+        }
+        None => (Value::Missing, Value::Missing),
+    };
+    [rounded(t, 1e5), rounded(at.x, 1e5), rounded(at.y, 1e5), rounded(a.heading, 1e2), foot, step]
 }

@@ -2,7 +2,6 @@
 
 use super::piece::{Piece, Place};
 use crate::base::geometry::Vec2;
-use crate::route::way::Bend;
 
 /// Pieces that are shorter, m, are left out.
 const SHORTEST: f64 = 1e-12;
@@ -32,18 +31,6 @@ impl Path {
         for piece in pieces {
             path.push(piece);
         }
-        path
-    }
-
-    /// Of a shortest way: the arcs around corners, and the lines that join them.
-    pub fn from_bends(start: Vec2, bends: &[Bend], end: Vec2) -> Self {
-        let mut path = Self::empty(start);
-        for &Bend { centre, radius, from, turn } in bends {
-            let arc = Piece::Arc { centre, radius, from, turn };
-            path.push_line(arc.at(0.0).position);
-            path.push(arc);
-        }
-        path.push_line(end);
         path
     }
 

@@ -2,7 +2,6 @@
 
 mod eight;
 
-use super::arithmetic::{apply, combine};
 use super::crowd::{self, Members, Probe};
 use super::lanes::{Body, Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
 use super::node::{Crowd, Cut, Id, Join, Measure, Node};
@@ -420,17 +419,17 @@ fn apply_all<S: Simd>(function: Function, a: Vector<S>) -> Vector<S> {
         Function::Exp => by_lane(
             a,
             #[inline(always)]
-            |x| apply(Function::Exp, x),
+            |x| Function::Exp.of(x),
         ),
         Function::Ln => by_lane(
             a,
             #[inline(always)]
-            |x| apply(Function::Ln, x),
+            |x| Function::Ln.of(x),
         ),
         _ => by_lane(
             a,
             #[inline(always)]
-            |x| apply(function, x),
+            |x| function.of(x),
         ),
     }
 }
@@ -449,7 +448,7 @@ fn combine_all<S: Simd>(operator: Arithmetic, a: Vector<S>, b: Vector<S>) -> Vec
             a,
             b,
             #[inline(always)]
-            |a, b| combine(operator, a, b),
+            |a, b| operator.of(a, b),
         ),
     }
 }

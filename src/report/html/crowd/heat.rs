@@ -4,7 +4,7 @@
 //! Seven shades from the map `viridis` stand for values. Their brightness goes one way, so that they can be told apart in
 //! grey and by those who do not see some colours; the brightest is nearest to the paper.
 
-use super::figure::Figure;
+use super::Figure;
 use super::moments::{Moment, place};
 use super::plan::Plan;
 use crate::base::geometry::{Bounds, Vec2};

@@ -1,12 +1,10 @@
 //! What a page shows of crowds, from the traces that are kept for its player: heat maps, N(t) through lines, speed against
 //! density. All are drawn when the page is made.
 
-mod figure;
 mod heat;
 mod moments;
 mod passage;
 mod plan;
-mod speed_density;
 #[cfg(test)]
 mod tests;
 
@@ -14,9 +12,11 @@ use crate::base::tick::Clock;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::Trace;
 use crate::kernel::Voronoi;
-use crate::report::number::{counted, duration};
+use crate::report::number::{count, counted, duration};
 use crate::report::phrase::settings;
-use figure::Figure;
+use crate::report::svg::frame::{Frame, part_of_page};
+use crate::report::svg::scale::Scale;
+use moments::Moment;
 use plan::Plan;
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
         let moments = moments::moments(&Voronoi::new(scene), traces.iter().map(|trace| &trace.motion));
         figures.extend(heat::figures(&plan, traces, &moments));
         figures.extend(lines);
-        figures.extend(speed_density::figure(&moments));
+        figures.extend(speed_density(&moments));
     } else {
         figures.extend(lines);
     }
@@ -97,4 +97,51 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     }
     let result = shown.and_then(|shown| run.results.get(shown.result));
     Some(Crowd { head: result.map_or(String::new(), settings), note, figures })
+}
+
+// Speed against density: a dot for each second of each trace. The density is that of the area that people occupy: their
+// number over the area of all their cells.
+
+/// Dots of a diagram of speed and density.
+const MOST_DOTS: usize = 2000;
+
+/// The diagram; none where nobody is seen for a second.
+fn speed_density(moments: &[Moment]) -> Option<Figure> {
+    let dot = |moment: &Moment| {
+        let area: f64 = moment.people.iter().map(|(_, area)| area).sum();
+        Some((moment.people.len() as f64 / area, moment.speed?)).filter(|(density, _)| density.is_finite())
+    };
+    let all: Vec<(f64, f64)> = moments.iter().filter_map(dot).collect();
+    let every = all.len().div_ceil(MOST_DOTS).max(1);
+    let dots: Vec<(f64, f64)> = all.iter().copied().step_by(every).collect();
+    if dots.is_empty() {
+        return None;
+    }
+    let x = Scale::linear(dots.iter().map(|dot| dot.0).chain([0.0]));
+    let y = Scale::linear(dots.iter().map(|dot| dot.1).chain([0.0]));
+    let mut frame = Frame::new(["density (agents/m²)", "mean speed (m/s)"], x, y);
+    frame.cloud(dots, 1);
+    let shown = if every > 1 {
+        format!(" Of {} dots, one in {every} is shown.", count(all.len() as u64))
+    } else {
+        String::new()
+    };
+    let caption = format!(
+        "Speed against density. Each dot is one second of a trace: the number of agents over the area of all their \
+         Voronoi cells (at most 1 m around each, cut at walls and obstacles), and the mean speed of the agents over \
+         that second, along straight lines.{shown}"
+    );
+    Some(Figure { caption, svg: part_of_page("Speed against density", vec![frame]), is_wide: true })
+}
+
+// A figure: a drawing with its caption.
+
+/// A drawing and what it shows.
+#[derive(Clone, Debug)]
+pub(in crate::report::html) struct Figure {
+    pub(in crate::report::html) caption: String,
+    /// SVG, in which all texts are escaped.
+    pub(in crate::report::html) svg: String,
+    /// Whether it takes all the width of a page.
+    pub(in crate::report::html) is_wide: bool,
 }

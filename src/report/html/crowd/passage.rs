@@ -1,7 +1,7 @@
 //! Who crossed a line, over time: N(t), its mean and range over the traces, and the flow. A line is crossed as the
 //! language's `crossings(L)` counts it, each person once; the ways between the states of a trace are straight.
 
-use super::figure::Figure;
+use super::Figure;
 use super::moments::place;
 use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
