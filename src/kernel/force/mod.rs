@@ -7,7 +7,6 @@
 //! A new term between two bodies is a file here and a line in `with_pair_terms`.
 
 mod ahead;
-mod cohesion;
 pub(super) mod contact;
 pub(super) mod pair;
 mod social;
@@ -16,10 +15,10 @@ pub(super) mod walls;
 use super::pace::fastest;
 use super::plane::Closed;
 use super::state::State;
+use crate::base::geometry::Vec2;
 use crate::base::math::at_least;
 use crate::model::{Agent, Body, Law, Parameter, Periods, Scenario};
 pub(super) use ahead::Ahead;
-use cohesion::Cohesion;
 pub(super) use pair::Both;
 use pair::Sum;
 use social::Particles;
@@ -56,7 +55,7 @@ pub struct Forces {
 type SameForesight = bool;
 
 /// Runs a block with the terms between two bodies that a scenario has, as `$term`, and its plane, as `$plane`. It is compiled
-/// once for each combination of them, so that a term that a scenario lacks costs nothing.
+/// once for each combination that is common, so that a term that such a scenario lacks costs nothing.
 macro_rules! with_pair_terms {
     ($forces:ident, $term:ident, $plane:pat, $body:expr) => {
         if let (Some(true), Some((b, _)), false) = ($forces.ahead, $forces.shared, $forces.second) {
@@ -81,15 +80,11 @@ macro_rules! with_pair_terms {
             let $plane = $crate::kernel::plane::Open;
             let $term = $crate::kernel::force::Social::<false, false>::with_own_ranges();
             let second = $crate::kernel::force::Social::<true, false>::with_own_ranges();
-            let repulsion = $forces.particles.repulsion.as_slice();
-            with_pair_terms!(
-                @if $forces.second, $term = $crate::kernel::force::Both($term, second),
-                with_pair_terms!(
-                    @if !repulsion.is_empty(),
-                    $term = $crate::kernel::force::Bounded { term: $term, repulsion },
-                    $body
-                )
-            )
+            // A scene with particles or with the second term has both.
+            let both = $forces.second || !$forces.particles.repulsion.is_empty();
+            let repulsion = $forces.repulsion.as_slice();
+            let more = $crate::kernel::force::Bounded { term: $crate::kernel::force::Both($term, second), repulsion };
+            with_pair_terms!(@if both, $term = more, $body)
         }
     };
     (@on $forces:ident, $plane:pat, $body:expr) => {
@@ -163,6 +158,64 @@ impl Forces {
     pub(super) fn add_cohesion(&self, state: &State, sums: &mut [Sum]) {
         for group in &self.groups {
             group.add(&self.periods, state, sums);
+        }
+    }
+}
+
+// Attraction within groups (Moussaid, Perozo, Garnier, Helbing, Theraulaz 2010): a constant force towards the centroid of
+// the n members present, on those farther than (n - 1)/2 m from it. Without lanes: groups are few, and this is the same
+// for both layouts.
+
+/// Members that attract each other.
+#[derive(Clone, Debug)]
+struct Cohesion {
+    members: Vec<u32>,
+    /// N.
+    attraction: f64,
+}
+
+impl Cohesion {
+    /// The groups of a scenario with an attraction.
+    fn all(scenario: &Scenario) -> Vec<Self> {
+        let groups = scenario.groups.iter();
+        groups
+            .filter(|group| group.attraction != 0.0 && group.members.len() > 1)
+            .map(|group| Self {
+                members: group.members.iter().map(|member| member.0).collect(),
+                attraction: group.attraction,
+            })
+            .collect()
+    }
+
+    /// Adds the attraction of a group.
+    fn add(&self, periods: &Periods, state: &State, sums: &mut [Sum]) {
+        for lane in state.occupied.iter() {
+            // On a closed plane of each the image that is nearest to the first.
+            let mut first = None;
+            let mut place = |member: u32| {
+                let slot = state.slot(member as usize, lane);
+                let here = state.present[slot.block].has(slot.lane);
+                here.then(|| {
+                    let (x, y) = (&state.motion.x[slot.block], &state.motion.y[slot.block]);
+                    let at = Vec2::new(x.0[slot.lane], y.0[slot.lane]);
+                    let first = *first.get_or_insert(at);
+                    (slot, if periods.are_none() { at } else { first + periods.way(at - first) })
+                })
+            };
+            let (mut n, mut sum) = (0.0, Vec2::zeros());
+            for (_, at) in self.members.iter().filter_map(|&member| place(member)) {
+                n += 1.0;
+                sum += at;
+            }
+            for (slot, at) in self.members.iter().filter_map(|&member| place(member)) {
+                let way = sum / n - at;
+                let distance = way.dot(&way).sqrt();
+                if distance > 0.0 && distance > 0.5 * (n - 1.0) {
+                    let pull = way * (self.attraction / distance);
+                    sums[slot.block].x.0[slot.lane] += pull.x;
+                    sums[slot.block].y.0[slot.lane] += pull.y;
+                }
+            }
         }
     }
 }
