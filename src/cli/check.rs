@@ -372,7 +372,7 @@ fn line(arguments: &Questions) -> CommandLine {
     CommandLine { properties: arguments.properties.clone(), ..line }
 }
 
-// Where the results of a call go, and in which formats: one to standard output, each of the others into a file.
+// The places and formats of the results of a call: one goes to standard output, each of the others into a file.
 
 /// Format of what a call prints, and the files that it writes.
 #[derive(Clone, Debug)]

@@ -124,7 +124,7 @@ pub(super) fn parse_velocity(text: &str) -> Result<Velocity, String> {
     Velocity::from_name(text).ok_or_else(|| "write `seen` or `recorded`".to_owned())
 }
 
-// Where one result of a call goes, as an option names it: a format, and perhaps a file.
+// The place of one result of a call, as an option names it: a format, and perhaps a file.
 
 /// `json`, or `json=FILE`.
 #[derive(Clone, Debug, PartialEq, Eq)]

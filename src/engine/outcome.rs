@@ -225,7 +225,7 @@ impl Stop {
     }
 }
 
-// What was asked: a query under one setting, as reports quote it.
+// A query under one setting, as reports quote it.
 
 /// A query under one setting.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -343,7 +343,7 @@ pub struct Side {
     pub counts: Counts,
 }
 
-// What a result certifies, in numbers. `QueryResult::certifies` says the same in words.
+// The certificate of a result in numbers. `QueryResult::certifies` says the same in words.
 
 /// A claim about the quantity of a query, and how surely it holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -375,7 +375,7 @@ pub enum Certified {
     },
 }
 
-// What time or trials did not suffice for.
+// Queries for which time or trials did not suffice.
 
 /// How a query that is no `check` falls short of what it asks, for lack of time or of trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -407,7 +407,7 @@ impl QueryResult {
     }
 }
 
-// What was found wrong with, or odd in, the inputs of a call, as reports quote it: plain data, without sources.
+// Errors and oddities of the inputs of a call, as reports quote them: plain data, without sources.
 
 /// Where in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]

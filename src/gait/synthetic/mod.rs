@@ -209,7 +209,7 @@ impl Gait for SyntheticGait {
     }
 }
 
-// What differs between people who walk (Weidmann 1993 for the speed; stature and step width of adults).
+// Differences between people who walk (Weidmann 1993 for the speed; stature and step width of adults).
 
 /// What the gait of a person depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]

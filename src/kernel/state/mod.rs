@@ -228,7 +228,7 @@ impl Driving {
     }
 }
 
-// Where all agents are and how they move: part of the state.
+// The places and velocities of all agents: part of the state.
 
 /// Positions, velocities and forces of all slots.
 #[derive(Clone, Debug, PartialEq)]

@@ -160,7 +160,7 @@ pub fn page(page: Page<'_>) -> String {
     html.render().unwrap_or_else(|error| error.to_string())
 }
 
-// What a page may run: its own script and its own style, by their hashes, and nothing from outside.
+// The policy of a page: it may run its own script and its own style, by their hashes, and nothing from outside.
 
 /// The content security policy of a page with one script and one style.
 fn policy(script: &str, style: &str) -> String {
