@@ -4,7 +4,11 @@
 //! other core works on the floors above, which need less (ARCHITECTURE.md, "Two crates").
 
 pub mod base;
+pub mod data;
+pub mod gait;
 pub mod kernel;
 pub mod logic;
 pub mod model;
+pub mod route;
 pub mod stats;
+pub mod trials;

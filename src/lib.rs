@@ -35,16 +35,13 @@ pub mod advise;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compile;
-pub mod data;
 pub mod engine;
-pub mod gait;
 pub mod library;
 pub mod perception;
 pub mod replay;
 pub mod report;
-pub mod route;
 pub mod syntax;
 
-pub use smc_core::{base, kernel, logic, model, stats};
+pub use smc_core::{base, data, gait, kernel, logic, model, route, stats, trials};
 
 pub use library::{AgentState, Diagnostics, Draft, Model, Options, Report, Snapshot, Trial};

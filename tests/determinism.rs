@@ -2,13 +2,13 @@
 //! order in which trials end, and trials that are run a second time.
 
 use smc::compile::{Files, Input, Study, compile};
-use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
 use smc::engine::outcome::{CallResult, Failure, QueryResult};
 use smc::engine::{Budget, Call, CommandLine, Executor, Nobody, Threads, run};
 use smc::logic::Invalid;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};
+use smc::trials::cell::Item;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 

@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 11] = [
     &["base"],
     &["syntax", "model", "logic", "stats", "data"],
     &["compile", "kernel"],
-    &["route", "perception"],
+    &["route", "perception", "trials"],
     &["gait"],
     &["engine"],
     &["advise"],

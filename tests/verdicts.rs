@@ -3,6 +3,7 @@
 
 use crate::program::{Place, SMALL, at_root, recordings, timeless};
 use serde_json::Value;
+use smc::base::fingerprint::Fingerprint;
 
 fn verdicts(stem: &str, words: &[&str]) -> Option<Value> {
     let (model, properties) = (format!("models/{stem}.scn"), format!("properties/{stem}.bltl"));
@@ -20,13 +21,54 @@ fn verdicts(stem: &str, words: &[&str]) -> Option<Value> {
     Some(json)
 }
 
-/// Where the recordings lie is no part of a verdict.
-fn placed(json: &Value) -> String {
-    let text = serde_json::to_string_pretty(json).unwrap();
-    if !text.contains("--data ") {
-        return text;
-    }
-    recordings().map_or(text.clone(), |data| text.replace(data.to_str().unwrap(), "DATA"))
+/// A number in a line: short, with its unit.
+fn number(value: &Value) -> String {
+    value.as_f64().map_or_else(|| "-".to_owned(), |value| format!("{value:.6}"))
+}
+
+/// A result in one line: its query, what came of it, and the fingerprint of its whole JSON, in which no byte may change.
+fn line(result: &Value) -> String {
+    let word = |field: &str| result[field].as_str().unwrap_or("-").to_owned();
+    let settings = result["settings"].as_object().unwrap().iter();
+    let settings = settings.map(|(name, value)| format!(" {name}={}", value["value"]));
+    let witnesses = result["witnesses"].as_array().unwrap().iter();
+    let witnesses = witnesses
+        .map(|one| format!(" {} {} at {}", one["shows"].as_str().unwrap(), one["trial"], one["time"]));
+    let unit = result["unit"].as_str().map_or(String::new(), |unit| format!(" {unit}"));
+    let choice = result["choice"].as_str().map_or(String::new(), |choice| format!(" chosen: {choice}"));
+    format!(
+        "{}{}\n  {} {} [{}, {}]{unit}, {} trials, {} ({}/{}/{}){choice}{} {}\n",
+        word("query"),
+        settings.collect::<String>(),
+        word("verdict"),
+        number(&result["estimate"]),
+        number(&result["low"]),
+        number(&result["high"]),
+        result["trials"],
+        word("stopped_by"),
+        result["successes"],
+        result["failures"],
+        result["unresolved"],
+        witnesses.collect::<String>(),
+        print(result),
+    )
+}
+
+/// The fingerprint of a JSON, where the place of the recordings is none of it.
+fn print(json: &Value) -> String {
+    let text = json.to_string();
+    let text = match recordings() {
+        Some(data) if text.contains("--data ") => text.replace(data.to_str().unwrap(), "DATA"),
+        _ => text,
+    };
+    Fingerprint::of(text.as_bytes()).to_string().replace("fnv1a64:", "")
+}
+
+/// Queries with their verdicts, and the fingerprint of what stands beside them.
+fn table(mut json: Value) -> String {
+    let results = json["results"].take();
+    let lines: String = results.as_array().unwrap().iter().map(line).collect();
+    format!("{} {}\n{lines}", json["scenario"].as_str().unwrap(), print(&json))
 }
 
 #[test]
@@ -35,7 +77,7 @@ fn every_model_and_its_properties() {
         insta::glob!("../models", "*.scn", |path| {
             let stem = path.file_stem().unwrap().to_str().unwrap();
             if let Some(json) = verdicts(stem, &["--max-trials", "100"]) {
-                insta::assert_snapshot!("verdicts", placed(&json));
+                insta::assert_snapshot!("verdicts", table(json));
             }
         });
     });

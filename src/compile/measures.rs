@@ -4,7 +4,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::number::Number;
 use super::observed::bare;
-use super::study::{Column, MeasureKind, Root, Sought};
+use super::study::{Column, MeasureKind};
 use super::symbols::{Meaning, ScopeId};
 use super::told::Told;
 use super::typed::Typed;
@@ -13,6 +13,7 @@ use crate::logic::{
     Invalid, Monitor, Node, NodeId, Part, Relation, Robustness, SignalMonitor, SignalRobustness, Term,
     TermId, leaves, looks_ahead, reach,
 };
+use crate::logic::{Root, Sought};
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;

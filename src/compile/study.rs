@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::wording::{Frame, Uses};
 use super::written::Written;
-use crate::logic::{NodeId, Relation, TermId, Tree};
+use crate::logic::{Root, Tree};
 use crate::model::{AgentId, Body, Bool, Num, Scenario, Set};
 use crate::stats::Chosen;
 use crate::syntax::source::{Source, Span};
@@ -161,28 +161,6 @@ pub struct Column {
     pub root: Root,
     /// As written.
     pub text: String,
-}
-
-/// A formula or a metric.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Root {
-    /// A formula.
-    Formula(NodeId),
-    /// A metric.
-    Metric(TermId),
-    /// How far a formula is from changing its truth. All its conditions are comparisons of numbers.
-    Robustness(NodeId, Sought),
-}
-
-/// What is wanted of a robustness: once its bounds force that, a trial can end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sought {
-    /// Its value.
-    Value,
-    /// Its value where that lies in a range, else the side on which it lies outside.
-    Clipped(f64, f64),
-    /// Whether it is related so to a number.
-    Compared(Relation, f64),
 }
 
 /// A column of a world.

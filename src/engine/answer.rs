@@ -1,9 +1,7 @@
 //! Answers: what a procedure has found, put into words and numbers.
 
-use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
 use super::cause;
-use super::cell::Item;
 use super::compare::CompareSampling;
 use super::entry::EstimateEntry;
 use super::estimate::EstimateSampling;
@@ -21,8 +19,11 @@ use super::watch::Watch;
 use super::witness;
 use super::words;
 use crate::base::random::TrialKey;
-use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root, Sought};
+use crate::compile::study::{Ask, Measure, MeasureKind, Query};
+use crate::logic::{Root, Sought};
 use crate::stats::{Coverage, Decision, Statement};
+use crate::trials::budget::{Budget, DEFAULT_TRIALS};
+use crate::trials::cell::Item;
 
 /// The option that ends queries after so many trials.
 const MAX_TRIALS: &str = "--max-trials";

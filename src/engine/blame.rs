@@ -1,6 +1,5 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
-use super::budget::Budget;
 use super::culprits::{NAMED, Search};
 use super::decider::{self, Decider};
 use super::grounds::{copies, each, grounds};
@@ -14,6 +13,7 @@ use crate::logic::{
     sides, sources,
 };
 use crate::model::{AgentId, Bool, Who};
+use crate::trials::budget::Budget;
 
 /// Most truth values and numbers that are kept of a trial.
 const MOST_KEPT: usize = 1 << 27;
@@ -128,7 +128,7 @@ pub(super) fn truth(
         // Of those who are not there nothing is to be said, unless there is nobody else.
         let absent = |reason: &&Reason| {
             let Node::Atom(atom) = prepared.tree.nodes[reason.leaf.0 as usize] else { return false };
-            !reason.value && matches!(prepared.atoms()[atom.0 as usize], Bool::Present(_))
+            !reason.value && matches!(prepared.atoms[atom.0 as usize], Bool::Present(_))
         };
         // The last reason in time is the one that closed the case.
         let said: Vec<&Reason> = explanation.reasons.iter().filter(|reason| !absent(reason)).collect();
@@ -239,7 +239,7 @@ pub(super) fn margin(
             let mut search = Search::of(prepared, &state, recording.stop);
             for side in [x, y] {
                 if let Term::Signal(signal) = &prepared.tree.terms[side.0 as usize] {
-                    search.extremum(&prepared.signals()[signal.0 as usize]);
+                    search.extremum(&prepared.signals[signal.0 as usize]);
                 }
             }
             if search.is_empty() {
@@ -269,7 +269,7 @@ fn origin(
     };
     if let Some(state) = state_at(*at) {
         let mut search = Search::of(prepared, &state, stop);
-        let signal = &prepared.signals()[signal.0 as usize];
+        let signal = &prepared.signals[signal.0 as usize];
         search.extremum(signal);
         if search.is_empty() {
             search.name_all_in(signal);
@@ -326,13 +326,13 @@ fn closing(
 ) -> Said {
     let word = words::truth(reason.value);
     match &prepared.tree.nodes[reason.leaf.0 as usize] {
-        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms()[atom.0 as usize] => {
+        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms[atom.0 as usize] => {
             let name = prepared.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
             format!("{name} is {}present", if reason.value { "" } else { "not " }).into()
         }
         Node::Atom(atom) => {
             let Some(text) = prepared.texts.atoms.get(atom.0 as usize) else { return Said::default() };
-            let condition = &prepared.atoms()[atom.0 as usize];
+            let condition = &prepared.atoms[atom.0 as usize];
             let stop = recording.stop;
             if let Some((part, state)) = prepared.texts.parts.get(&atom.0).zip(state_at(reason.to))
                 && let Some(because) = because((prepared, stop), (part, text), reason.value, &state)
@@ -422,7 +422,7 @@ fn spoken_of(search: &mut Search<'_>, prepared: &PreparedWorld, leaf: NodeId) {
     for side in [x, y] {
         let (_, signals) = leaves(&prepared.tree, &[Part::Term(side)]).unwrap_or_default();
         for signal in signals {
-            search.name_all_in(&prepared.signals()[signal.0 as usize]);
+            search.name_all_in(&prepared.signals[signal.0 as usize]);
         }
     }
 }

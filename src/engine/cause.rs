@@ -1,8 +1,5 @@
 //! Why a trial is unresolved: it is run again up to there, and what stopped it is said, with what helps.
 
-use super::budget::Budget;
-use super::cell::{Item, Reading};
-use super::observer::SignalObserver;
 use super::prepared::PreparedWorld;
 use super::words;
 use crate::base::lanes::Mask;
@@ -12,6 +9,10 @@ use crate::kernel::process::{self, ViewReadings};
 use crate::kernel::start::Overlapped;
 use crate::kernel::{Code, End, Program, Readings, Run, State, start};
 use crate::model::{AgentId, Scenario, TOP_SPEED};
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Item, Reading};
+use crate::trials::group::ColumnGroup;
+use crate::trials::observer::SignalObserver;
 
 /// Most bodies that are named of those that were made smaller.
 const MOST_SHRUNK: usize = 3;
@@ -35,7 +36,7 @@ pub(super) fn unresolved(
     if scenario.clock.is_jumps() {
         return in_continuous_time(prepared, column, &mut run, budget);
     }
-    let Ok(mut group) = prepared.group(&[column]) else { return String::new() };
+    let Ok(mut group) = ColumnGroup::of(prepared, &[column]) else { return String::new() };
     group.start(0);
     let mut missing = None;
     loop {
@@ -208,7 +209,7 @@ fn absent(prepared: &PreparedWorld, column: usize, state: &State, readings: &Rea
         if readings.signals.get(k).is_none_or(|signal| !signal.0[0].is_nan()) {
             continue;
         }
-        prepared.signals()[k].mentions(&mut |agent| {
+        prepared.signals[k].mentions(&mut |agent| {
             // Who has left is where they left.
             let mut sources = scenario.sources.iter().zip(&state.queues.entered);
             let is_to_come = sources.any(|(source, entered)| {
@@ -233,12 +234,12 @@ fn nobody(prepared: &PreparedWorld, column: usize, state: &State, time: &str) ->
         readings.unresolved.has(0)
     };
     let atoms = prepared.atoms_of(column).into_iter().filter(|k| needs.atom(*k, tick)).find_map(|k| {
-        let code = Code::compile(scenario, std::slice::from_ref(&prepared.atoms()[k]), &[]);
+        let code = Code::compile(scenario, std::slice::from_ref(&prepared.atoms[k]), &[]);
         lost(&code).then(|| prepared.texts.atoms.get(k).cloned())?
     });
     let text = atoms.or_else(|| {
         prepared.signals_of(column).into_iter().filter(|k| needs.signal(*k, tick)).find_map(|k| {
-            let code = Code::compile(scenario, &[], std::slice::from_ref(&prepared.signals()[k]));
+            let code = Code::compile(scenario, &[], std::slice::from_ref(&prepared.signals[k]));
             lost(&code).then(|| prepared.texts.signals.get(k).map(|(text, _)| text.clone()))?
         })
     });

@@ -1,7 +1,5 @@
 //! Comparisons: one measure in two worlds, over pairs of trials with the same random numbers.
 
-use super::budget::Budget;
-use super::cell::{Cell, Item, Reading};
 use super::estimate::LARGEST_ROUND;
 use super::executor::{Executor, Job};
 use super::fault::Fault;
@@ -15,6 +13,8 @@ use super::watch::{Forecast, Likely, Watch};
 use crate::compile::methods;
 use crate::compile::study::{MeasureKind, Query};
 use crate::stats::{self, Difference, Mean};
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Cell, Item, Reading};
 
 /// The procedure of a comparison.
 enum Procedure {

@@ -1,11 +1,11 @@
 //! A check or an estimate on its way: what it has read of its trials, in the order of their indices.
 
-use super::cell::{Cell, Item, Reading};
 use super::forecast::PilotStatistics;
 use super::outcome::{Evidence, Snapshot, Stop, next_after};
 use super::procedure::Procedure;
 use super::tally::Tally;
 use crate::compile::study::{Ask, Query};
+use crate::trials::cell::{Cell, Item, Reading};
 
 /// One query on its way.
 pub(super) struct EstimateEntry<'q> {

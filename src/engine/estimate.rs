@@ -4,8 +4,6 @@
 //! each trial, so the size of rounds leaves no trace in a result. A procedure whose level takes a proof reads as far as
 //! no level could stop it; the proofs come when the others have stopped.
 
-use super::budget::Budget;
-use super::cell::Item;
 use super::entry::EstimateEntry;
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
@@ -18,6 +16,8 @@ use super::watch::{Forecast, Likely, Watch};
 use crate::base::math;
 use crate::stats::Levels;
 use crate::stats::calibration::Patience;
+use crate::trials::budget::Budget;
+use crate::trials::cell::Item;
 
 /// A trial that takes so many times as many steps for one column as for another holds that one up.
 const MUCH_LONGER: f64 = 16.0;

@@ -3,14 +3,14 @@
 //! Which thread runs which trial, and in which lane, leaves no trace: outcomes are put in the order of their
 //! items before anybody looks at them.
 
-use super::budget::Budget;
-use super::cell::{Block, Cell, Item, Series};
-use super::columns::Finished;
 use super::prepared::PreparedWorld;
-use super::runner::Runner;
 use super::splitting::{RunRecord, SplitRun};
 use crate::base::lanes::LANES;
 use crate::logic::Invalid;
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Block, Cell, Item, Series};
+use crate::trials::columns::Finished;
+use crate::trials::runner::Runner;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Mutex;
@@ -348,7 +348,7 @@ impl<'p, B: Iterator<Item = Block<'p>>> Task<'p, '_, B> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::chain::tests::prepared;
+    use crate::engine::chains::prepared;
     use std::time::Duration;
 
     #[test]

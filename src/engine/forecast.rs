@@ -2,7 +2,6 @@
 //!
 //! What a procedure takes at a given truth is its own (`stats::Spec::forecast`).
 
-use super::cell::{Cell, Reading};
 use super::procedure::Procedure;
 use super::watch::Likely;
 use crate::base::math::{self, ln};
@@ -11,6 +10,7 @@ use crate::stats;
 use crate::stats::mean::until_narrow;
 use crate::stats::ranking::Ranking;
 use crate::stats::spec::Guess;
+use crate::trials::cell::{Cell, Reading};
 
 /// Error of what a few trials say of a share.
 const UNSURE: f64 = 0.08;

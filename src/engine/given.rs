@@ -1,8 +1,5 @@
 //! Columns of a world over states that are given from outside, as a recording gives them, instead of simulated.
 
-use super::batch::Monitors;
-use super::cell::Reading;
-use super::columns::StepColumns;
 use super::fault::Fault;
 use super::prepared::PreparedWorld;
 use crate::base::geometry::Vec2;
@@ -11,6 +8,9 @@ use crate::base::random::TrialKey;
 use crate::compile::study::World;
 use crate::kernel::Run;
 use crate::model::{AgentId, Body, Kind, Law, Parameter};
+use crate::trials::batch::Monitors;
+use crate::trials::cell::Reading;
+use crate::trials::columns::StepColumns;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

@@ -1,15 +1,12 @@
-//! Floor 5: trials, executors, and the outcomes of queries.
+//! Floor 5: executors, procedures, and the outcomes of queries.
 
 mod answer;
-mod batch;
 mod blame;
-pub mod budget;
 mod call;
 mod cause;
-pub mod cell;
-mod chain;
+#[cfg(test)]
+mod chains;
 mod checkpoints;
-mod columns;
 mod compare;
 mod culprits;
 mod decider;
@@ -23,7 +20,6 @@ pub mod given;
 mod grounds;
 mod instance;
 mod method;
-mod observer;
 pub mod outcome;
 mod pilot;
 mod placement;
@@ -31,7 +27,6 @@ pub mod prepared;
 mod procedure;
 mod rank;
 mod recall;
-mod runner;
 pub mod sample;
 mod session;
 pub mod shards;
@@ -44,7 +39,7 @@ mod watch;
 mod witness;
 mod words;
 
-pub use budget::Budget;
+pub use crate::trials::budget::Budget;
 pub use call::{Call, CommandLine, quoted};
 pub use cause::{divergence, no_start, smaller};
 pub use executor::{Executor, Threads};

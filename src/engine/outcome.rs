@@ -11,6 +11,7 @@ pub use super::decider::Decider;
 use super::flaw::Flaw;
 use crate::base::fingerprint::Fingerprint;
 use crate::stats::Claim;
+pub use crate::trials::budget::Stop;
 pub use distribution::{Distribution, Histogram, Quantile, Step};
 pub use evidence::{Evidence, Snapshot, Standing, next_after};
 pub use ranking::{RankedOption, Ranking, Status};
@@ -179,50 +180,6 @@ pub struct Method {
     pub name: String,
     /// Its parameters by name, in SI units, in order.
     pub numbers: Vec<(String, f64)>,
-}
-
-/// Why sampling stopped.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Stop {
-    /// A test crossed its boundary.
-    Boundary,
-    /// The interval, or the gap of a ranking, became as narrow as asked for.
-    Width,
-    /// More trials of this kind would not help: how the unresolved ones are read decides the verdict, or keeps
-    /// the interval wide.
-    Unresolved,
-    /// The number of trials was planned beforehand.
-    #[default]
-    Plan,
-    /// The largest number of trials was reached.
-    Cap,
-    /// Time was up.
-    Deadline,
-    /// Somebody interrupted it.
-    Interrupt,
-    /// Outcomes of further trials were not there to be merged.
-    Missing,
-}
-
-impl Stop {
-    /// Its word in JSON.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Boundary => "boundary",
-            Self::Width => "width",
-            Self::Unresolved => "unresolved",
-            Self::Plan => "plan",
-            Self::Cap => "cap",
-            Self::Deadline => "deadline",
-            Self::Interrupt => "interrupt",
-            Self::Missing => "missing",
-        }
-    }
-
-    /// Whether how many trials were read is no function of the query.
-    pub const fn is_early(self) -> bool {
-        matches!(self, Self::Deadline | Self::Interrupt | Self::Missing)
-    }
 }
 
 // A query under one setting, as reports quote it.

@@ -2,10 +2,10 @@
 //! yields, so that a forecast stands before the sampling. They are the trials that sampling begins with, and
 //! are not run twice unless they were too slow to finish in the pilot.
 
-use super::budget::Budget;
-use super::cell::{Cell, Item};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Cell, Item};
 use std::sync::atomic::Ordering;
 
 /// Trials that a forecast looks at: as many on every machine, so that it is the same on every machine.

@@ -1,6 +1,5 @@
 //! The statistical procedure of a check or an estimate, fed with cells in index order.
 
-use super::cell::{Cell, Reading};
 use super::fault::Fault;
 use super::outcome::{Distribution, Histogram, Interval, Quantile, Step};
 use crate::compile::study::{Ask, MeasureKind};
@@ -12,6 +11,7 @@ use crate::stats::{
     self, AnyEstimator, AnyTest, Coverage, Decision, Estimator as _, Hypothesis, Mean, Outcome, Readings,
     Rule as _, Statement,
 };
+use crate::trials::cell::{Cell, Reading};
 
 /// Bins of the histogram of a metric.
 const BINS: usize = 40;

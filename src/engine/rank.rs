@@ -3,8 +3,6 @@
 //! All options share the random numbers of a trial (common random numbers): neither moves nor values of parameters
 //! are part of the address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
 
-use super::budget::Budget;
-use super::cell::{Item, Reading, Series};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
@@ -18,6 +16,8 @@ use crate::base::lanes::LANES;
 use crate::compile::study::{MeasureKind, Query, RankOption, Target};
 use crate::stats::ranking::{Booleans, Choice, Each, Race, Ranking, Scores, Share};
 use crate::stats::{self, Mean, Outcome};
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Item, Reading, Series};
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
 
@@ -116,7 +116,7 @@ impl Procedure {
         }
     }
 
-    fn feed(&mut self, arm: usize, cells: &[super::cell::Cell]) -> Result<(), Fault> {
+    fn feed(&mut self, arm: usize, cells: &[crate::trials::cell::Cell]) -> Result<(), Fault> {
         match self {
             Self::Booleans(race) => race.feed(arm, &cells.iter().map(outcome).collect::<Vec<Outcome>>())?,
             Self::Each(each) => each.feed(arm, &cells.iter().map(outcome).collect::<Vec<Outcome>>())?,

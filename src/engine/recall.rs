@@ -1,17 +1,18 @@
 //! What decided a trial in continuous time: it is run again to see when it was decided, and what changed there, or how long it
 //! had been as it was.
 
-use super::budget::Budget;
 use super::checkpoints::Checkpoints;
 use super::grounds::{Asked, copies, each, grounds};
 use super::prepared::PreparedWorld;
 use super::words;
 use crate::base::random::TrialKey;
-use crate::compile::study::{Part, Root};
+use crate::compile::study::Part;
 use crate::kernel::process::ViewReadings;
 use crate::kernel::{End, Run, State};
+use crate::logic::Root;
 use crate::logic::{Reading, open_atoms};
 use crate::model::{AgentId, Bool, Set};
+use crate::trials::budget::Budget;
 use std::sync::Arc;
 
 /// Most atoms that are named.
@@ -143,7 +144,7 @@ struct Past {
 
 /// What the atoms of a column are made of, each once: conditions that join no others.
 fn parts(prepared: &PreparedWorld, used: &[usize]) -> Vec<Bool> {
-    let mut open: Vec<&Bool> = used.iter().rev().filter_map(|k| prepared.atoms().get(*k)).collect();
+    let mut open: Vec<&Bool> = used.iter().rev().filter_map(|k| prepared.atoms.get(*k)).collect();
     let mut found: Vec<Bool> = Vec::new();
     while let Some(condition) = open.pop() {
         match condition {
@@ -240,7 +241,7 @@ impl Past {
         let mut owners: Vec<String> = Vec::new();
         let mut said: Vec<String> = Vec::new();
         match prepared.texts.parts.get(&(atom as u32)) {
-            None => owners = copies(scenario, (prepared.atoms().get(atom)?, truth), false, self),
+            None => owners = copies(scenario, (prepared.atoms.get(atom)?, truth), false, self),
             Some(part) => {
                 let found = grounds(part, truth, self)?;
                 let parts: Vec<&Part> = found.iter().map(|ground| ground.part).collect();

@@ -1,15 +1,15 @@
 //! Trials of a world in which the ways of some agents are kept beside what each column comes to.
 
-use super::batch::{Batch, Monitors};
-use super::budget::Budget;
-use super::cell::{Item, Reading, Series};
-use super::columns::StepColumns;
 use super::fault::Fault;
 use super::prepared::PreparedWorld;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::Run;
 use crate::model::AgentId;
+use crate::trials::batch::{Batch, Monitors};
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Item, Reading, Series};
+use crate::trials::columns::StepColumns;
 
 /// What trials yield.
 #[derive(Clone, Debug, Default)]

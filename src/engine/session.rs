@@ -1,9 +1,7 @@
 //! A whole call: worlds made ready, queries put into groups that share trials, forecast, and run.
 
 use super::answer::Answers;
-use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
-use super::cell::Series;
 use super::compare::{CompareSampling, Sides};
 use super::entry::EstimateEntry;
 use super::estimate::{Advance, EstimateSampling};
@@ -23,6 +21,8 @@ use crate::compile::study::{Ask, Query, Study};
 use crate::stats::Levels;
 use crate::stats::spec::Make;
 use crate::stats::splitting;
+use crate::trials::budget::{Budget, DEFAULT_TRIALS};
+use crate::trials::cell::Series;
 use std::collections::{BTreeMap, VecDeque};
 
 /// A query gets no larger part of the time than one of so many for its first trial.

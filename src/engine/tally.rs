@@ -1,7 +1,7 @@
 //! What was consumed for one query, besides what its procedure keeps.
 
-use super::cell::{Cell, Reading};
 use super::outcome::{ConsumedTrials, Counts};
+use crate::trials::cell::{Cell, Reading};
 
 /// Trials of which something is noted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! One trial on its own: the words for one in which the model is wrong.
 
-use super::cell::{Item, Series};
 use super::fault::Fault;
 use super::flaw::Flaw;
 use super::prepared::PreparedWorld;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::{End, Run, State, process};
+use crate::trials::cell::{Item, Series};
 
 /// Runs a trial up to its error, and says what is wrong, when, and in which state.
 pub(super) fn fault(prepared: &PreparedWorld, item: Item, series: Series) -> Fault {

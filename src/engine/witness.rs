@@ -2,11 +2,8 @@
 //! value of a metric; when that was decided, and by what.
 
 use super::blame::{self, Said};
-use super::budget::Budget;
 use super::call::Call;
-use super::cell::Reading;
 use super::checkpoints::Checkpoints;
-use super::observer::Observer;
 use super::outcome::{Shows, Witness};
 use super::prepared::PreparedWorld;
 use super::recall;
@@ -14,8 +11,12 @@ use super::tally::Tally;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
-use crate::compile::study::{Root, Sought};
 use crate::kernel::{Address, Run};
+use crate::logic::{Root, Sought};
+use crate::trials::budget::Budget;
+use crate::trials::cell::Reading;
+use crate::trials::group::ColumnGroup;
+use crate::trials::observer::Observer;
 
 /// The trials that show why a measure of truth values came out as it did.
 pub(super) fn sides(tally: &Tally) -> Vec<(Shows, u64)> {
@@ -73,12 +74,12 @@ fn witness(
         let (time, value, what) = recall::decision(prepared, column, (trial, call.seed), dimension, budget)?;
         return Some(Witness { value, time, what, ..blank });
     }
-    let mut group = prepared.group(&[column]).ok()?;
+    let mut group = ColumnGroup::of(prepared, &[column]).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
     let mut clipped = None;
     if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut group.observers[0] {
         *sought = Sought::Value;
-        clipped = prepared.observer(column).ok();
+        clipped = Observer::of(prepared, column).ok();
     }
     // When it left its range.
     let mut left = None;

@@ -2,10 +2,10 @@
 
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
-use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::{Budget, Fault, Threads};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::budget::DEFAULT_TRIALS;
 use std::time::Duration;
 
 /// Options of a check. Unless a timeout is set, results are a function of the texts, the seed and the numbers of trials.

@@ -3,7 +3,7 @@
 use super::paths;
 use crate::compile::Study;
 use crate::compile::study::World;
-use crate::route::{Doubt, Ways};
+use crate::route::{Doubt, DoubtKind, Ways};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeSet;
@@ -36,10 +36,15 @@ pub fn is_refused(found: &[Diagnostic]) -> bool {
 
 fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
     let place = world.place_of(doubt.agent);
-    if doubt.code == Code::E0803 {
+    let code = match doubt.kind {
+        DoubtKind::Never => Code::E0803,
+        DoubtKind::Sometimes => Code::W0802,
+        DoubtKind::Around => Code::W0803,
+    };
+    if doubt.kind == DoubtKind::Never {
         let error = match place {
-            Some(span) => Diagnostic::error(Code::E0803, span, doubt.said.as_str()),
-            None => Diagnostic::placeless(Code::E0803, doubt.said.as_str()),
+            Some(span) => Diagnostic::error(code, span, doubt.said.as_str()),
+            None => Diagnostic::placeless(code, doubt.said.as_str()),
         };
         let imports = doubt.between.and_then(|barrier| {
             world.origins.imports.iter().find(|(range, _)| range.contains(&barrier)).map(|(_, span)| *span)
@@ -51,11 +56,10 @@ fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
         return error.hint(doubt.hint.as_str());
     }
     let warning = match place {
-        Some(span) => Diagnostic::warning(doubt.code, span, doubt.said.as_str()),
-        None => Diagnostic {
-            severity: Severity::Warning,
-            ..Diagnostic::placeless(doubt.code, doubt.said.as_str())
-        },
+        Some(span) => Diagnostic::warning(code, span, doubt.said.as_str()),
+        None => {
+            Diagnostic { severity: Severity::Warning, ..Diagnostic::placeless(code, doubt.said.as_str()) }
+        }
     };
     warning.hint(doubt.hint.as_str())
 }

@@ -12,6 +12,7 @@ mod need;
 pub mod offline;
 mod present;
 mod reach;
+mod root;
 pub mod signal;
 mod source;
 
@@ -27,6 +28,7 @@ pub use monitor::{Antecedent, Monitor};
 pub use need::Needs;
 pub use offline::Recording;
 pub use reach::{Part, Reach, leaves, looks_ahead, reach};
+pub use root::{Root, Sought};
 pub use signal::robustness::{Bounds, SignalRobustness};
 pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

@@ -13,12 +13,12 @@ use super::region::{Fit, HORIZONS};
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
-use crate::engine::cell::{Reading, Series};
 use crate::engine::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::cell::{Reading, Series};
 use std::collections::BTreeSet;
 
 /// Displacements are those of so many seconds, or of the horizon if that is shorter.

@@ -9,11 +9,11 @@ use super::instants::Instant;
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::compile::study::World;
-use crate::engine::cell::Reading;
 use crate::engine::given::{averaged, judge};
 use crate::engine::{PreparedWorld, Threads};
 use crate::model::{AgentId, Parameter};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::cell::Reading;
 
 /// What one instant came to.
 #[derive(Clone, Debug, PartialEq)]

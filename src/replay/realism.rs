@@ -13,12 +13,12 @@ use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::base::tick::Tick;
-use crate::engine::cell::Series;
 use crate::engine::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::cell::Series;
 
 /// What is scored.
 pub const FEATURES: [&str; 5] = ["speed", "acceleration", "nearest", "time to collision", "contact"];

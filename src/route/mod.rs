@@ -23,6 +23,6 @@ pub mod profile;
 pub mod roadmap;
 
 pub use atlas::Atlas;
-pub use survey::Doubt;
+pub use survey::{Doubt, DoubtKind};
 pub use way::{Bend, ShortestWay};
 pub use wayfinder::{Ways, drivers};

@@ -6,7 +6,6 @@ use super::way::ShortestWay;
 use super::wayfinder::is_drawn;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::model::{Agent, AgentId, Goal, Obstacle, Parameter, Position, Route, Scenario, Scene, Sight};
-use crate::syntax::codes::Code;
 
 /// A start or goal is looked at in so many rows of so many places; and in more where none of these has a way.
 const ROWS: u32 = 8;
@@ -15,13 +14,24 @@ const MORE_ROWS: u32 = 40;
 /// The share of drawn radii that is looked at.
 const WIDEST: f64 = 0.999;
 
+/// How bad something about ways is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DoubtKind {
+    /// No trial can have a way.
+    Never,
+    /// A trial may have none.
+    Sometimes,
+    /// The way leads around the outside of the walls.
+    Around,
+}
+
 /// Something about the ways of some agents.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// The first of them.
     pub agent: AgentId,
-    /// E0803 if no trial can have a way; else a warning.
-    pub code: Code,
+    /// How bad it is.
+    pub kind: DoubtKind,
     /// In words.
     pub said: String,
     /// The barrier that is in between, by its number, if one is.
@@ -145,7 +155,7 @@ pub(super) fn doubts(
         };
         let known = out.len();
         of_agent(atlas, scenario, (first, &who), &mut out);
-        if !out[known..].iter().any(|doubt| doubt.code == Code::E0803) {
+        if !out[known..].iter().any(|doubt| doubt.kind == DoubtKind::Never) {
             out.extend(planned(first, &who));
         }
     }
@@ -169,7 +179,7 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
             let known = out.len();
             let mut doubt = |said| {
                 let hint = EXPLAINED.to_owned();
-                out.push(Doubt { agent: id, code: Code::W0802, said, between: None, hint });
+                out.push(Doubt { agent: id, kind: DoubtKind::Sometimes, said, between: None, hint });
             };
             let places = from.places(scene, ROWS);
             let ways: Vec<_> = places.iter().map(|p| atlas.way(*p, goal, least)).collect();
@@ -184,7 +194,7 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                     (None, None) => String::new(),
                 };
                 let said = format!("no way leads {who} from {from_name} to {name}{why}");
-                out.push(Doubt { agent: id, code: Code::E0803, said, between, hint: MEND.to_owned() });
+                out.push(Doubt { agent: id, kind: DoubtKind::Never, said, between, hint: MEND.to_owned() });
                 return;
             }
             if some < all {
@@ -216,7 +226,7 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                     "the shortest way of {who} from {from_name} to {name} leads around the outside of the walls: {length} m instead of {straight} m"
                 );
                 let hint = CLOSE.to_owned();
-                out.push(Doubt { agent: id, code: Code::W0803, said, between: None, hint });
+                out.push(Doubt { agent: id, kind: DoubtKind::Around, said, between: None, hint });
             }
         }
     }

@@ -229,7 +229,7 @@ fn settings(cases: u32) -> ProptestConfig {
 }
 
 proptest! {
-    #![proptest_config(settings(1500))]
+    #![proptest_config(settings(500))]
 
     #[test]
     fn margins_of_single_operators(seed in any::<u64>(), horizon in 0u64..8) {
@@ -243,7 +243,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(settings(300))]
+    #![proptest_config(settings(100))]
 
     #[test]
     fn margins_of_three_levels(seed in any::<u64>(), horizon in 3u64..7) {

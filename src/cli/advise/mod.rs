@@ -8,13 +8,13 @@ use super::values::{Model, parse_count, parse_duration, parse_moment, parse_velo
 use super::{complaint, inputs, output, page};
 use crate::advise::{Adviser, Advising, role};
 use crate::data::tracks::{Batch, Velocity};
-use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::{Budget, Threads};
 use crate::library::Parsed;
 use crate::model::Scene;
 use crate::report::advised::{Advised, to_page};
 use crate::report::{ExitCode as Exit, advice};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::budget::DEFAULT_TRIALS;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

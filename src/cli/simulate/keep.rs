@@ -6,11 +6,11 @@ use crate::cli::values::threads;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::compile::study::{Ask, MeasureKind, Query, Target};
-use crate::engine::cell::{Item, Reading};
 use crate::engine::executor::{Executor, Job};
 use crate::engine::{Budget, Fault, PreparedWorld};
 use crate::library;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::cell::{Item, Reading};
 
 /// Trials that are judged at one time.
 const ROUND: u64 = 4096;

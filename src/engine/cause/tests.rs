@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::compile::{Files, Input, compile};
-use crate::engine::budget::Budget;
-use crate::engine::cell::Reading;
-use crate::engine::runner::Runner;
 use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
+use crate::trials::budget::Budget;
+use crate::trials::cell::Reading;
+use crate::trials::runner::Runner;
 
 const RESTLESS: &str = r#"scenario "Restless"
 horizon = 10 s
@@ -35,8 +35,8 @@ fn prepared(question: &str) -> PreparedWorld {
 #[test]
 fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     let mut prepared = prepared("estimate P(F (calm.n == 9)) within 0.1\n");
-    assert_eq!(prepared.most_jumps, 1 << 26);
-    prepared.most_jumps = 500;
+    assert_eq!(prepared.setup.most_jumps, 1 << 26);
+    prepared.setup.most_jumps = 500;
     let mut runner = Runner::general(&prepared, &[0]).unwrap();
     let mut items = Item::run(0, 3).into_iter().enumerate();
     let finished = runner.run(7, &mut || items.next(), &Budget::new(u64::MAX, None));
@@ -52,11 +52,11 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     );
     assert!(words.contains("at a rate of 1500 /s"), "{words}");
     // Not so many are made again.
-    (prepared.most_jumps, prepared.jumps_again) = (900, 400);
+    (prepared.setup.most_jumps, prepared.jumps_again) = (900, 400);
     let words = unresolved(&prepared, 0, item, (7, &Budget::new(u64::MAX, None)));
     assert!(words.contains("run again: 400 jumps by 0.") && words.contains("of `blinker["), "{words}");
     prepared.jumps_again = 1 << 20;
     // Enough jumps: no cause is reported.
-    prepared.most_jumps = 100_000;
+    prepared.setup.most_jumps = 100_000;
     assert_eq!(unresolved(&prepared, 0, item, (7, &Budget::new(u64::MAX, None))), "");
 }

@@ -109,8 +109,8 @@ fn split(bytes: &[u8]) -> Result<(Head, &[u8]), Damaged> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::cell::{Cell, Reading};
     use crate::engine::shards::Trials;
+    use crate::trials::cell::{Cell, Reading};
     use proptest::prelude::*;
 
     fn part() -> Part {

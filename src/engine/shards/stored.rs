@@ -2,11 +2,11 @@
 
 use super::part::{Body, Head, Part};
 use super::unit::{Trials, Unit};
-use crate::engine::budget::Budget;
-use crate::engine::cell::{Cell, Item};
 use crate::engine::executor::{Cells, Executor, Job, Threads};
 use crate::engine::splitting::{RunRecord, SplitRun};
 use crate::logic::Invalid;
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Cell, Item};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};

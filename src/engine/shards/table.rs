@@ -3,7 +3,7 @@
 //! in all trials of a block none; nothing is rounded.
 
 use super::part::{Damaged, UNFIT};
-use crate::engine::cell::{Cell, Reading};
+use crate::trials::cell::{Cell, Reading};
 use serde::{Deserialize, Serialize};
 
 /// Trials of a block.

@@ -4,7 +4,6 @@
 use super::{DISAGREEMENT, Found, Question, run};
 use crate::base::math;
 use crate::engine::answer::Answers;
-use crate::engine::budget::Budget;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::method;
@@ -15,6 +14,7 @@ use crate::engine::witness;
 use crate::engine::words;
 use crate::stats::splitting::Spread;
 use crate::syntax::codes::Code;
+use crate::trials::budget::Budget;
 
 /// Code of a disagreement, for `smc explain`.
 const DISAGREES: Code = Code::E0802;

@@ -2,12 +2,12 @@
 
 use super::path::Path;
 use super::paths::{Ended, EventPaths, PathResult, StepPaths};
-use crate::engine::batch::Batch;
-use crate::engine::budget::Budget;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::prepared::PreparedWorld;
 use crate::kernel::Address;
+use crate::trials::batch::Batch;
+use crate::trials::budget::Budget;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -9,8 +9,6 @@ mod record;
 
 pub use record::{RunRecord, SplitRun};
 
-use super::budget::Budget;
-use super::cell::{Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
@@ -22,6 +20,8 @@ use crate::base::random::TrialKey;
 use crate::compile::study::Query;
 use crate::stats::splitting::{Rule, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Item, Reading};
 use batches::Batches;
 use path::Path;
 

@@ -2,16 +2,17 @@
 
 use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::engine::batch::Monitors;
-use crate::engine::cell::Reading;
 use crate::engine::fault::Fault;
-use crate::engine::observer::Observer;
-use crate::engine::prepared::{ColumnGroup, PreparedWorld};
+use crate::engine::prepared::PreparedWorld;
 use crate::engine::trial::flaw;
 use crate::kernel::process::{View, ViewReadings};
 use crate::kernel::{End, Run};
 use crate::logic::{self, Invalid, SignalMonitor, SignalRobustness};
 use crate::stats::splitting::Flight;
+use crate::trials::batch::Monitors;
+use crate::trials::cell::Reading;
+use crate::trials::group::ColumnGroup;
+use crate::trials::observer::Observer;
 
 /// The result of a path.
 #[derive(Clone, Debug, Default)]
@@ -86,7 +87,7 @@ pub(super) struct StepPaths<'s> {
 impl<'s> StepPaths<'s> {
     /// For a column that is a formula, and one that is the robustness that is its level.
     pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
-        Ok(Self { group: prepared.group(&columns)?, paths: Paths::new(prepared) })
+        Ok(Self { group: ColumnGroup::of(prepared, &columns)?, paths: Paths::new(prepared) })
     }
 
     /// The paths that ended since this was asked last.

@@ -1,7 +1,7 @@
 //! When the atoms of a formula held in a trial.
 
-use crate::compile::study::Root;
 use crate::engine::prepared::PreparedWorld;
+use crate::logic::Root;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
 use std::collections::BTreeSet;
 

@@ -11,11 +11,9 @@ pub use behind::FIRST;
 pub use motion::{Membership, Millimetres, Motion, PlannedWay, SPACING, Track};
 pub use recorded::{Walk, recorded};
 
-use super::budget::Budget;
 use super::call::Call;
-use super::cell::{Item, Reading};
 use super::outcome::{CallResult, Shows, Witness};
-use super::prepared::{ColumnGroup, PreparedWorld};
+use super::prepared::PreparedWorld;
 use super::witness;
 use crate::base::lanes::Mask;
 use crate::base::tick::{Clock, Tick};
@@ -24,6 +22,9 @@ use crate::kernel::process::ViewReadings;
 use crate::kernel::{Address, End, Program, Run, State, start};
 use crate::logic;
 use crate::model::Scenario;
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Item, Reading};
+use crate::trials::group::ColumnGroup;
 use bar::Bars;
 use behind::{Pick, Reason};
 use std::collections::BTreeMap;
@@ -177,7 +178,7 @@ fn follow_steps(
     let mut motion = Motion::new(scenario);
     let mut watched = Vec::new();
     for reason in reasons {
-        let mut group = prepared.group(&[reason.column]).ok()?;
+        let mut group = ColumnGroup::of(prepared, &[reason.column]).ok()?;
         group.start(0);
         watched.push(Watched { group, bars: Bars::of(prepared, reason.column), reading: None });
     }

@@ -22,7 +22,7 @@ pub(super) enum Cell {
 
 /// The cell that has the answer at moment 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Root {
+pub(super) enum Whole {
     Truth(Ref),
     Number(usize),
 }
@@ -33,7 +33,7 @@ pub(super) struct Cells {
     pub(super) truths: Vec<Truth>,
     pub(super) numbers: Vec<Number>,
     pub(super) order: Vec<Cell>,
-    pub(super) root: Root,
+    pub(super) root: Whole,
     /// From which moment on each truth and each number is needed, found by `forget`.
     needed: (Vec<Moment>, Vec<Moment>),
     /// Look again for what can go when so many pieces are stored.
@@ -41,7 +41,7 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    pub(super) fn new(truths: Vec<Truth>, numbers: Vec<Number>, order: Vec<Cell>, root: Root) -> Self {
+    pub(super) fn new(truths: Vec<Truth>, numbers: Vec<Number>, order: Vec<Cell>, root: Whole) -> Self {
         let needed = (vec![0; truths.len()], vec![0; numbers.len()]);
         Self { truths, numbers, order, root, needed, limit: FEW_PIECES }
     }
@@ -89,11 +89,11 @@ impl Cells {
 
     fn reading(&self) -> Option<Reading> {
         match self.root {
-            Root::Truth(root) => match super::truth::look(&self.truths, root, 0).2 {
+            Whole::Truth(root) => match super::truth::look(&self.truths, root, 0).2 {
                 Known::Open => None,
                 known => Some(Reading::Truth(known == Known::True)),
             },
-            Root::Number(root) => {
+            Whole::Number(root) => {
                 let stream = &self.numbers[root].stream;
                 stream.first_open().is_none().then(|| Reading::Value(stream.around(0).1))
             }
@@ -148,8 +148,8 @@ impl Cells {
             }
         }
         match self.root {
-            Root::Truth(root) => truths[root.cell] = 0,
-            Root::Number(root) => numbers[root] = 0,
+            Whole::Truth(root) => truths[root.cell] = 0,
+            Whole::Number(root) => numbers[root] = 0,
         }
         for (truth, needed) in self.truths.iter_mut().zip(&self.needed.0) {
             truth.track.forget(*needed);

@@ -4,7 +4,6 @@ use super::parameter::Fitted;
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
 use crate::compile::study::Study;
-use crate::engine::cell::{Reading, Series};
 use crate::engine::sample::{Followed, Sample, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
@@ -17,6 +16,7 @@ use crate::replay::monitor::happened;
 use crate::replay::region::{Fit, HORIZONS};
 use crate::replay::situation::{Replay, is_of_a_place};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::trials::cell::{Reading, Series};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -5,8 +5,7 @@ use super::terrain::{Terrain, Terrains};
 use crate::base::geometry::Vec2;
 use crate::model::{AgentId, RoadmapRule, Scenario};
 use crate::route::roadmap::DistanceField;
-use crate::route::survey::{Doubt, Place, Stretch, stretches};
-use crate::syntax::codes::Code;
+use crate::route::survey::{Doubt, DoubtKind, Place, Stretch, stretches};
 
 /// A start is looked at in so many rows of so many places, and a goal.
 const ROWS: u32 = 8;
@@ -32,7 +31,13 @@ pub fn doubt(terrains: &Terrains, scenario: &Scenario, seed: u64, id: AgentId, w
         if number < 2 {
             let vertices = if number == 1 { "only one vertex" } else { "no vertices" };
             let said = format!("the roadmap of `{}` has {vertices}", planner.kind);
-            return Some(Doubt { agent: id, code: Code::W0802, said, between: None, hint: hint(&terrain) });
+            return Some(Doubt {
+                agent: id,
+                kind: DoubtKind::Sometimes,
+                said,
+                between: None,
+                hint: hint(&terrain),
+            });
         }
         let Some((from, from_name)) = origin else { continue };
         let places = free(from, ROWS);
@@ -46,8 +51,8 @@ pub fn doubt(terrains: &Terrains, scenario: &Scenario, seed: u64, id: AgentId, w
             0 => format!("{path} from {from_name} to {name}"),
             _ => format!("{path} to {name} from {without} of {all} places of {from_name}"),
         };
-        let code = if count == 0 { Code::E0803 } else { Code::W0802 };
-        return Some(Doubt { agent: id, code, said, between: None, hint: hint(&terrain) });
+        let kind = if count == 0 { DoubtKind::Never } else { DoubtKind::Sometimes };
+        return Some(Doubt { agent: id, kind, said, between: None, hint: hint(&terrain) });
     }
     None
 }

@@ -4,7 +4,7 @@ mod formulas;
 mod now;
 mod numbers;
 
-use super::cells::{Cell, Cells, Root};
+use super::cells::{Cell, Cells, Whole};
 use super::moment::{FOREVER, LONGEST_HORIZON, Moment, Scale};
 use super::number::{Number, Source};
 use super::truth::{Machine, Ref, Truth};
@@ -41,8 +41,8 @@ pub(super) fn plan(
         return Ok((builder.parts.present, Way::Direct(direct), scale, watched));
     }
     let root = match root {
-        Part::Node(id) => Root::Truth(builder.truth(id, (0, 0))?),
-        Part::Term(id) => Root::Number(builder.number(id, (0, 0))?),
+        Part::Node(id) => Whole::Truth(builder.truth(id, (0, 0))?),
+        Part::Term(id) => Whole::Number(builder.number(id, (0, 0))?),
     };
     let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
     Ok((builder.parts.present, Way::Cells(Box::new(cells)), scale, watched))

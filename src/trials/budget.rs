@@ -3,7 +3,6 @@
 //! The clock never decides what a trial yields, only how many trials are consumed; with a deadline a result
 //! is a function of input, seed and the number of trials.
 
-use super::outcome::Stop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -18,8 +17,52 @@ const STEPS_BETWEEN_LOOKS: u32 = 32;
 const WORK_BETWEEN_LOOKS: usize = 2048;
 
 /// Steps of a batch between two looks at the clock: few where each takes long.
-pub(super) fn steps_between_looks(agents: usize) -> u32 {
+pub fn steps_between_looks(agents: usize) -> u32 {
     ((WORK_BETWEEN_LOOKS / agents.max(1)) as u32).clamp(1, STEPS_BETWEEN_LOOKS)
+}
+
+/// Why sampling stopped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stop {
+    /// A test crossed its boundary.
+    Boundary,
+    /// The interval, or the gap of a ranking, became as narrow as asked for.
+    Width,
+    /// More trials of this kind would not help: how the unresolved ones are read decides the verdict, or keeps
+    /// the interval wide.
+    Unresolved,
+    /// The number of trials was planned beforehand.
+    #[default]
+    Plan,
+    /// The largest number of trials was reached.
+    Cap,
+    /// Time was up.
+    Deadline,
+    /// Somebody interrupted it.
+    Interrupt,
+    /// Outcomes of further trials were not there to be merged.
+    Missing,
+}
+
+impl Stop {
+    /// Its word in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Boundary => "boundary",
+            Self::Width => "width",
+            Self::Unresolved => "unresolved",
+            Self::Plan => "plan",
+            Self::Cap => "cap",
+            Self::Deadline => "deadline",
+            Self::Interrupt => "interrupt",
+            Self::Missing => "missing",
+        }
+    }
+
+    /// Whether how many trials were read is no function of the query.
+    pub const fn is_early(self) -> bool {
+        matches!(self, Self::Deadline | Self::Interrupt | Self::Missing)
+    }
 }
 
 /// How much may be spent.
@@ -117,7 +160,7 @@ impl Budget {
     }
 
     /// The next outcome is not there: nothing that follows it is read in this part of the budget.
-    pub(super) fn lack(&self) {
+    pub fn lack(&self) {
         self.lacks.store(true, Ordering::Relaxed);
     }
 
@@ -136,7 +179,7 @@ impl Budget {
     }
 
     /// Why no more should be started, if that is so.
-    pub(super) fn reason_to_stop(&self) -> Option<Stop> {
+    pub fn reason_to_stop(&self) -> Option<Stop> {
         self.must_stop().then(|| self.stopped_by())
     }
 

@@ -7,11 +7,11 @@
 
 use super::budget::Budget;
 use super::cell::{Block, Cell, Reading};
-use super::prepared::PreparedWorld;
+use super::setup::Setup;
 use crate::base::lanes::Lanes;
-use crate::compile::study::Root;
 use crate::kernel::State;
 use crate::kernel::process::{JumpBatch, Space, Stay, StepBatch, ViewReadings};
+use crate::logic::Root;
 use crate::logic::{Flat, Glance, Sort};
 
 /// Steps, and rounds of jumps, between two looks at the clock.
@@ -35,14 +35,14 @@ struct Sorts {
 impl Sorts {
     /// What the states that trials may visit are for some columns; `sort` says so for one of them and what is observed.
     fn of(
-        prepared: &PreparedWorld,
+        setup: &Setup,
         columns: &[usize],
         space: &Space,
         mut sort: impl FnMut(usize, &[bool], &[f64]) -> Sort,
     ) -> Vec<Self> {
-        let view = prepared.view(columns);
-        let mut state = State::new(prepared.program.layout, 0);
-        state.variables = vec![Lanes::ZERO; prepared.program.scenario.processes.variables.len()];
+        let view = setup.view(columns);
+        let mut state = State::new(setup.program.layout, 0);
+        state.variables = vec![Lanes::ZERO; setup.program.scenario.processes.variables.len()];
         let mut seen = ViewReadings::default();
         let mut all = vec![Self::default(); space.states()];
         for &place in space.reachable() {
@@ -67,8 +67,8 @@ impl Sorts {
 }
 
 /// Whether a runner of a chain may take these columns.
-fn fits(prepared: &PreparedWorld, columns: &[usize]) -> bool {
-    (1..=MOST_COLUMNS).contains(&columns.len()) && prepared.reads_variables_only(columns)
+fn fits(setup: &Setup, columns: &[usize]) -> bool {
+    (1..=MOST_COLUMNS).contains(&columns.len()) && setup.reads_variables_only(columns)
 }
 
 /// The classes of states, to find quickly where something may be decided: some goal is reached, some column stops,
@@ -78,7 +78,7 @@ const STOP: u8 = 2;
 const ANY: u8 = 4;
 
 /// Trials on a chain of steps.
-pub(super) struct StepChain {
+pub struct StepChain {
     flats: Vec<Flat>,
     /// By state.
     sorts: Vec<Sorts>,
@@ -88,7 +88,7 @@ pub(super) struct StepChain {
     open: Vec<u64>,
     rounds: u64,
     /// Steps made, of all trials; those too that lead nowhere and were left out.
-    pub(super) steps: u64,
+    pub steps: u64,
 }
 
 /// The batch of the last block, or a new one for another seed.
@@ -114,17 +114,17 @@ struct AtTick {
 }
 
 impl StepChain {
-    /// A runner for some columns of a prepared world, if it is made for them.
-    pub(super) fn of(prepared: &PreparedWorld, columns: &[usize]) -> Option<Self> {
-        let chain = prepared.program.processes.chain().filter(|_| fits(prepared, columns))?;
-        let clock = prepared.program.scenario.clock;
+    /// A runner for some columns of a setup, if it is made for them.
+    pub fn of(setup: &Setup, columns: &[usize]) -> Option<Self> {
+        let chain = setup.program.processes.chain().filter(|_| fits(setup, columns))?;
+        let clock = setup.program.scenario.clock;
         let flat = |column: &usize| {
-            let Root::Formula(root) = prepared.columns[*column] else { return None };
-            Flat::of(&prepared.tree, root, prepared.horizon, clock)
+            let Root::Formula(root) = setup.columns[*column] else { return None };
+            Flat::of(&setup.tree, root, setup.horizon, clock)
         };
         let mut flats = columns.iter().map(flat).collect::<Option<Vec<Flat>>>()?;
         let sort = |k: usize, atoms: &[bool], signals: &[f64]| flats[k].sort(atoms, signals);
-        let mut sorts = Sorts::of(prepared, columns, &chain.space, sort);
+        let mut sorts = Sorts::of(setup, columns, &chain.space, sort);
         for &state in chain.space.reachable() {
             sorts[state as usize].stop |= if chain.is_still(state) { STILL } else { 0 };
         }
@@ -146,14 +146,8 @@ impl StepChain {
     }
 
     /// Runs the trials of a block; the budget may say stop, then unfinished ones are dropped.
-    pub(super) fn run(
-        &mut self,
-        prepared: &PreparedWorld,
-        seed: u64,
-        block: &mut Block<'_>,
-        budget: &Budget,
-    ) {
-        let Some(chain) = prepared.program.processes.chain() else { return };
+    pub fn run(&mut self, setup: &Setup, seed: u64, block: &mut Block<'_>, budget: &Budget) {
+        let Some(chain) = setup.program.processes.chain() else { return };
         let trials = batch(&mut self.trials, seed, StepBatch::new);
         chain.begin(trials, block.items.iter().map(|item| item.index));
         let all = STILL | (STILL - 1) >> (MOST_COLUMNS - self.flats.len());
@@ -227,7 +221,7 @@ impl AtTick {
 }
 
 /// Trials on the chain of jumps of one process.
-pub(super) struct JumpChain {
+pub struct JumpChain {
     glances: Vec<Glance>,
     /// By state.
     sorts: Vec<Sorts>,
@@ -236,29 +230,23 @@ pub(super) struct JumpChain {
     open: Vec<(u32, u64)>,
     rounds: u64,
     /// Jumps made, of all trials.
-    pub(super) steps: u64,
+    pub steps: u64,
 }
 
 impl JumpChain {
-    /// A runner for some columns of a prepared world, if it is made for them.
-    pub(super) fn of(prepared: &PreparedWorld, columns: &[usize]) -> Option<Self> {
-        let chain = prepared.program.processes.embedded().filter(|_| fits(prepared, columns))?;
-        let glance = |column: &usize| prepared.signal_monitor(*column).ok()?.glance();
+    /// A runner for some columns of a setup, if it is made for them.
+    pub fn of(setup: &Setup, columns: &[usize]) -> Option<Self> {
+        let chain = setup.program.processes.embedded().filter(|_| fits(setup, columns))?;
+        let glance = |column: &usize| setup.signal_monitor(*column).ok()?.glance();
         let mut glances = columns.iter().map(glance).collect::<Option<Vec<Glance>>>()?;
         let sort = |k: usize, atoms: &[bool], signals: &[f64]| glances[k].sort(atoms, signals);
-        let sorts = Sorts::of(prepared, columns, &chain.space, sort);
+        let sorts = Sorts::of(setup, columns, &chain.space, sort);
         Some(Self { glances, sorts, trials: None, open: Vec::new(), rounds: 0, steps: 0 })
     }
 
     /// Runs the trials of a block; the budget may say stop, then unfinished ones are dropped.
-    pub(super) fn run(
-        &mut self,
-        prepared: &PreparedWorld,
-        seed: u64,
-        block: &mut Block<'_>,
-        budget: &Budget,
-    ) {
-        let Some(chain) = prepared.program.processes.embedded() else { return };
+    pub fn run(&mut self, setup: &Setup, seed: u64, block: &mut Block<'_>, budget: &Budget) {
+        let Some(chain) = setup.program.processes.embedded() else { return };
         let trials = batch(&mut self.trials, seed, JumpBatch::new);
         chain.begin(trials, block.items.iter().map(|item| item.index));
         let width = self.glances.len();
@@ -272,7 +260,7 @@ impl JumpChain {
             }
             self.rounds += 1;
             let before = trials.jumps();
-            let exhausted = before + 1 >= prepared.most_jumps;
+            let exhausted = before + 1 >= setup.most_jumps;
             let mut kept = 0;
             let (open, sorts, glances) = (&mut self.open[..], &self.sorts[..], &self.glances[..]);
             self.steps += chain.jump(trials, |place, stay| {
@@ -339,6 +327,3 @@ fn bits(set: u64) -> impl Iterator<Item = usize> {
     })
     .map(|left| left.trailing_zeros() as usize)
 }
-
-#[cfg(test)]
-pub(super) mod tests;

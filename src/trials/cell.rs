@@ -33,14 +33,14 @@ pub struct Cell {
 
 impl Cell {
     /// What is known before the first state.
-    pub(super) const BLANK: Self =
+    pub const BLANK: Self =
         Self { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false, no_way: false };
     /// Not decided when its trial was cut.
-    pub(super) const OPEN: Self = Self { steps: u64::MAX, ..Self::BLANK };
+    pub const OPEN: Self = Self { steps: u64::MAX, ..Self::BLANK };
 
     /// Whether it was not decided when its trial was cut.
     #[inline]
-    pub(super) const fn is_open(&self) -> bool {
+    pub const fn is_open(&self) -> bool {
         self.steps == u64::MAX
     }
 }
@@ -71,30 +71,30 @@ pub struct Item {
 
 impl Item {
     /// Its address in a series.
-    pub(super) fn address(self, series: impl Into<Series>) -> Address<'static> {
+    pub fn address(self, series: impl Into<Series>) -> Address<'static> {
         let Series { seed, branch } = series.into();
         let key = TrialKey { seed, index: self.index, branch };
         Address { key, advice: self.advice, changes: &[] }
     }
 
     /// Trials in a row, nobody advised.
-    pub(super) fn run(from: u64, count: u64) -> Vec<Self> {
+    pub fn run(from: u64, count: u64) -> Vec<Self> {
         Self::row(from, count).collect()
     }
 
     /// The same, one by one.
-    pub(super) fn row(from: u64, count: u64) -> impl Iterator<Item = Self> {
+    pub fn row(from: u64, count: u64) -> impl Iterator<Item = Self> {
         (from..from + count).map(|index| Self { advice: None, index })
     }
 }
 
 /// Trials in a row of a round, and where their cells go.
 #[derive(Debug)]
-pub(super) struct Block<'c> {
+pub struct Block<'c> {
     /// The trials.
-    pub(super) items: &'c [Item],
+    pub items: &'c [Item],
     /// Their cells, trial by trial.
-    pub(super) cells: &'c mut [Cell],
+    pub cells: &'c mut [Cell],
     /// Which of them are finished.
-    pub(super) finished: &'c mut [bool],
+    pub finished: &'c mut [bool],
 }

@@ -1,11 +1,12 @@
 //! Random small chains and formulas: the cells are those of the general batch.
 
-use super::super::cell::Item;
-use super::super::runner::Runner;
-use super::*;
+use super::prepared::PreparedWorld;
 use crate::compile::{Files, Input, compile};
 use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
+use crate::trials::budget::Budget;
+use crate::trials::cell::{Block, Cell, Item, Reading};
+use crate::trials::runner::Runner;
 use proptest::prelude::*;
 
 /// The prepared world of a scenario with one question for each formula, and the columns of the questions.
@@ -184,7 +185,7 @@ proptest! {
         most in prop_oneof![Just(6u64), Just(1 << 20)],
     ) {
         let mut prepared = prepared(&rates(&commands), &formulas);
-        prepared.most_jumps = most;
+        prepared.setup.most_jumps = most;
         same(&prepared, (from, seed))?;
     }
 }
@@ -235,7 +236,7 @@ fn one_small_process_with_rates_takes_the_chain_and_others_do_not() {
 fn same_in_one_block(mut prepared: PreparedWorld, columns: &[usize], count: u64) -> Vec<Cell> {
     let general = cells(&prepared, columns, (0, 3), count, None);
     assert_eq!(cells(&prepared, columns, (0, 3), count, Some(1024)), general);
-    prepared.program.processes = prepared.program.processes.clone().at_baseline();
+    prepared.setup.program.processes = prepared.program.processes.clone().at_baseline();
     assert_eq!(cells(&prepared, columns, (0, 3), count, Some(1024)), general);
     general.0
 }

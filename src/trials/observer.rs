@@ -2,16 +2,16 @@
 //! in continuous time.
 
 use super::cell::Reading;
-use super::prepared::PreparedWorld;
+use super::setup::Setup;
 use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::compile::study::{Root, Sought};
 use crate::kernel::Readings;
 use crate::logic::{self, Bounds, Invalid, Monitor, Relation, Robustness, SignalMonitor, SignalRobustness};
+use crate::logic::{Root, Sought};
 
 /// A monitor of one column, for all lanes of a batch.
 #[allow(clippy::large_enum_variant, reason = "there is one for each column of a worker")]
-pub(super) enum Observer {
+pub enum Observer {
     /// Of a formula.
     Formula(Monitor),
     /// Of a metric.
@@ -21,8 +21,17 @@ pub(super) enum Observer {
 }
 
 impl Observer {
+    /// What watches a column.
+    pub fn of(setup: &Setup, column: usize) -> Result<Self, Invalid> {
+        match setup.columns[column] {
+            Root::Robustness(_, sought) => Ok(Self::Robustness(setup.robustness(column)?, sought)),
+            Root::Formula(_) => Ok(Self::Formula(setup.monitor(column)?)),
+            Root::Metric(_) => Ok(Self::Metric(setup.monitor(column)?)),
+        }
+    }
+
     /// A new trial begins in this lane.
-    pub(super) fn start(&mut self, lane: usize) {
+    pub fn start(&mut self, lane: usize) {
         match self {
             Self::Formula(monitor) | Self::Metric(monitor) => monitor.start(lane),
             Self::Robustness(robustness, _) => robustness.start(lane),
@@ -31,7 +40,7 @@ impl Observer {
 
     /// The next state of these lanes.
     #[inline]
-    pub(super) fn observe(&mut self, lanes: Mask, readings: &Readings) {
+    pub fn observe(&mut self, lanes: Mask, readings: &Readings) {
         match self {
             Self::Formula(monitor) | Self::Metric(monitor) => {
                 monitor.observe(lanes, &readings.atoms, &readings.signals);
@@ -42,7 +51,7 @@ impl Observer {
 
     /// The lanes in which what is wanted is known.
     #[inline]
-    pub(super) fn decided(&self) -> Mask {
+    pub fn decided(&self) -> Mask {
         match self {
             Self::Formula(monitor) | Self::Metric(monitor) => monitor.decided(),
             Self::Robustness(robustness, sought) => (0..LANES)
@@ -55,7 +64,7 @@ impl Observer {
     }
 
     /// What a decided lane came to.
-    pub(super) fn reading(&self, lane: usize) -> Reading {
+    pub fn reading(&self, lane: usize) -> Reading {
         match self {
             Self::Formula(monitor) => Reading::Truth(monitor.truth().has(lane)),
             Self::Metric(monitor) => {
@@ -69,7 +78,7 @@ impl Observer {
     }
 
     /// The implications that the trial of a lane triggered, as bits.
-    pub(super) fn triggered(&self, lane: usize) -> u64 {
+    pub fn triggered(&self, lane: usize) -> u64 {
         match self {
             Self::Formula(monitor) | Self::Metric(monitor) => {
                 let bits = monitor.antecedents().enumerate().filter(|(_, a)| a.triggered.has(lane));
@@ -113,7 +122,7 @@ fn wanted((lower, upper): (f64, f64), sought: Sought) -> Option<Reading> {
 /// A monitor of one column in continuous time, one trial at a time.
 #[derive(Clone)]
 #[allow(clippy::large_enum_variant, reason = "there is one for each column of a worker and lane")]
-pub(super) enum SignalObserver {
+pub enum SignalObserver {
     /// Of a formula or a metric.
     Plain(SignalMonitor),
     /// Of a robustness, as far as it is wanted.
@@ -121,16 +130,16 @@ pub(super) enum SignalObserver {
 }
 
 impl SignalObserver {
-    /// Of a column of a prepared world.
-    pub(super) fn of(prepared: &PreparedWorld, column: usize) -> Result<Self, Invalid> {
-        Ok(match prepared.columns[column] {
-            Root::Robustness(_, sought) => Self::Robustness(prepared.signal_robustness(column)?, sought),
-            Root::Formula(_) | Root::Metric(_) => Self::Plain(prepared.signal_monitor(column)?),
+    /// Of a column of a setup.
+    pub fn of(setup: &Setup, column: usize) -> Result<Self, Invalid> {
+        Ok(match setup.columns[column] {
+            Root::Robustness(_, sought) => Self::Robustness(setup.signal_robustness(column)?, sought),
+            Root::Formula(_) | Root::Metric(_) => Self::Plain(setup.signal_monitor(column)?),
         })
     }
 
     /// A new trial begins.
-    pub(super) fn start(&mut self) {
+    pub fn start(&mut self) {
         match self {
             Self::Plain(monitor) => monitor.start(),
             Self::Robustness(robustness, _) => robustness.start(),
@@ -139,12 +148,7 @@ impl SignalObserver {
 
     /// From `time` on, s, these values hold; what is wanted, if the states before it force it.
     #[inline]
-    pub(super) fn jump(
-        &mut self,
-        time: impl Into<Instant>,
-        atoms: &[bool],
-        signals: &[f64],
-    ) -> Option<Reading> {
+    pub fn jump(&mut self, time: impl Into<Instant>, atoms: &[bool], signals: &[f64]) -> Option<Reading> {
         match self {
             Self::Plain(monitor) => monitor.jump(time, atoms, signals).map(reading_of),
             Self::Robustness(robustness, sought) => {
@@ -155,7 +159,7 @@ impl SignalObserver {
     }
 
     /// The trial has reached its horizon.
-    pub(super) fn finish(&mut self) -> Reading {
+    pub fn finish(&mut self) -> Reading {
         match self {
             Self::Plain(monitor) => reading_of(monitor.finish()),
             Self::Robustness(robustness, sought) => {
@@ -166,7 +170,7 @@ impl SignalObserver {
     }
 
     /// Whether what is unresolved is so because the metric is no number.
-    pub(super) fn is_no_number(&self) -> bool {
+    pub fn is_no_number(&self) -> bool {
         match self {
             Self::Plain(monitor) => {
                 matches!(monitor.reading(), Some(logic::Reading::Value(value)) if value.is_nan())
@@ -176,7 +180,7 @@ impl SignalObserver {
     }
 
     /// The implications that the trial triggered, as bits.
-    pub(super) fn triggered(&self) -> u64 {
+    pub fn triggered(&self) -> u64 {
         match self {
             Self::Plain(monitor) => monitor.triggered(),
             // Nobody asks: a robustness is no verdict.

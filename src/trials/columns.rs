@@ -2,8 +2,9 @@
 
 use super::batch::Monitors;
 use super::cell::{Cell, Reading};
+use super::group::ColumnGroup;
 use super::observer::SignalObserver;
-use super::prepared::{ColumnGroup, PreparedWorld};
+use super::setup::Setup;
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::Run;
 use crate::kernel::process::{View, ViewReadings};
@@ -11,13 +12,13 @@ use crate::logic::Invalid;
 
 /// Finished trials: the places of their items, and for each as many cells as there are columns.
 #[derive(Debug, Default)]
-pub(super) struct Finished {
+pub struct Finished {
     /// Places of the items.
-    pub(super) places: Vec<usize>,
+    pub places: Vec<usize>,
     /// The cells, trial by trial.
-    pub(super) cells: Vec<Cell>,
+    pub cells: Vec<Cell>,
     /// Trials that were cut: the place of each item, and its cells.
-    pub(super) cut: Vec<(usize, Vec<Cell>)>,
+    pub cut: Vec<(usize, Vec<Cell>)>,
 }
 
 impl Finished {
@@ -75,7 +76,7 @@ impl Rows {
 }
 
 /// From step to step.
-pub(super) struct StepColumns {
+pub struct StepColumns {
     groups: Vec<ColumnGroup>,
     /// For each column, the lanes in which it is decided.
     settled: Vec<Mask>,
@@ -83,14 +84,14 @@ pub(super) struct StepColumns {
 }
 
 impl StepColumns {
-    /// Monitors of some columns of a prepared world.
-    pub(super) fn new(prepared: &PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
+    /// Monitors of some columns of a setup.
+    pub fn new(setup: &Setup, columns: &[usize]) -> Result<Self, Invalid> {
         let settled = vec![Mask::NONE; columns.len()];
-        Ok(Self { groups: prepared.groups(columns)?, settled, rows: Rows::new(columns.len()) })
+        Ok(Self { groups: ColumnGroup::each(setup, columns)?, settled, rows: Rows::new(columns.len()) })
     }
 
     /// What has been finished since this was asked last.
-    pub(super) fn take(&mut self) -> Finished {
+    pub fn take(&mut self) -> Finished {
         std::mem::take(&mut self.rows.finished)
     }
 }
@@ -178,7 +179,7 @@ impl Monitors for StepColumns {
 ///
 /// A state is judged when the next one comes, because one that lasts no time is as if it had not been; so a
 /// decision shows at the first jump after it, or at the horizon.
-pub(super) struct EventColumns {
+pub struct EventColumns {
     view: View,
     seen: ViewReadings,
     /// Lane by lane, one a column.
@@ -189,21 +190,21 @@ pub(super) struct EventColumns {
 }
 
 impl EventColumns {
-    /// Monitors of some columns of a prepared world.
-    pub(super) fn new(prepared: &PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
+    /// Monitors of some columns of a setup.
+    pub fn new(setup: &Setup, columns: &[usize]) -> Result<Self, Invalid> {
         let one: Vec<SignalObserver> =
-            columns.iter().map(|&column| SignalObserver::of(prepared, column)).collect::<Result<_, _>>()?;
+            columns.iter().map(|&column| SignalObserver::of(setup, column)).collect::<Result<_, _>>()?;
         Ok(Self {
-            view: prepared.view(columns),
+            view: setup.view(columns),
             seen: ViewReadings::default(),
             monitors: (0..LANES).flat_map(|_| one.iter().cloned()).collect(),
             rows: Rows::new(columns.len()),
-            most: prepared.most_jumps,
+            most: setup.most_jumps,
         })
     }
 
     /// What has been finished since this was asked last.
-    pub(super) fn take(&mut self) -> Finished {
+    pub fn take(&mut self) -> Finished {
         std::mem::take(&mut self.rows.finished)
     }
 

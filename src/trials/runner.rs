@@ -5,12 +5,12 @@ use super::budget::Budget;
 use super::cell::{Block, Item, Series};
 use super::chain::{JumpChain, StepChain};
 use super::columns::{EventColumns, Finished, StepColumns};
-use super::prepared::PreparedWorld;
+use super::setup::Setup;
 use crate::logic::Invalid;
 
 /// Runs trials one after the other.
-pub(super) struct Runner<'s> {
-    prepared: &'s PreparedWorld,
+pub struct Runner<'s> {
+    setup: &'s Setup,
     columns: Vec<usize>,
     kind: RunnerKind<'s>,
 }
@@ -27,37 +27,37 @@ enum RunnerKind<'s> {
 }
 
 impl<'s> Runner<'s> {
-    /// A worker for some columns of a prepared world.
-    pub(super) fn new(prepared: &'s PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
-        let kind = if let Some(chain) = StepChain::of(prepared, columns) {
+    /// A worker for some columns of a setup.
+    pub fn new(setup: &'s Setup, columns: &[usize]) -> Result<Self, Invalid> {
+        let kind = if let Some(chain) = StepChain::of(setup, columns) {
             RunnerKind::StepChain(Box::new(chain))
-        } else if let Some(chain) = JumpChain::of(prepared, columns) {
+        } else if let Some(chain) = JumpChain::of(setup, columns) {
             RunnerKind::JumpChain(Box::new(chain))
         } else {
-            return Self::general(prepared, columns);
+            return Self::general(setup, columns);
         };
-        Ok(Self { prepared, columns: columns.to_vec(), kind })
+        Ok(Self { setup, columns: columns.to_vec(), kind })
     }
 
     /// A worker that runs trials of every kind.
-    pub(super) fn general(prepared: &'s PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
-        let program = &prepared.program;
+    pub fn general(setup: &'s Setup, columns: &[usize]) -> Result<Self, Invalid> {
+        let program = &setup.program;
         let kind = if program.scenario.clock.is_jumps() {
-            RunnerKind::Events(Box::new(Batch::new(program, EventColumns::new(prepared, columns)?)))
+            RunnerKind::Events(Box::new(Batch::new(program, EventColumns::new(setup, columns)?)))
         } else {
-            RunnerKind::Steps(Box::new(Batch::new(program, StepColumns::new(prepared, columns)?)))
+            RunnerKind::Steps(Box::new(Batch::new(program, StepColumns::new(setup, columns)?)))
         };
-        Ok(Self { prepared, columns: columns.to_vec(), kind })
+        Ok(Self { setup, columns: columns.to_vec(), kind })
     }
 
     /// Whether it observes just these columns.
-    pub(super) fn serves(&self, columns: &[usize]) -> bool {
+    pub fn serves(&self, columns: &[usize]) -> bool {
         self.columns == columns
     }
 
     /// Runs items until `next` gives no more, or the budget says stop; then unfinished trials are cut. One that
     /// takes blocks does nothing here.
-    pub(super) fn run(
+    pub fn run(
         &mut self,
         series: impl Into<Series>,
         next: &mut dyn FnMut() -> Option<(usize, Item)>,
@@ -82,23 +82,23 @@ impl<'s> Runner<'s> {
     }
 
     /// Whether it takes trials in blocks.
-    pub(super) fn takes_blocks(&self) -> bool {
+    pub fn takes_blocks(&self) -> bool {
         matches!(self.kind, RunnerKind::StepChain(_) | RunnerKind::JumpChain(_))
     }
 
     /// Runs the trials of a block, if it takes blocks; the budget may say stop, then unfinished ones are dropped.
-    pub(super) fn run_block(&mut self, series: impl Into<Series>, block: &mut Block<'_>, budget: &Budget) {
+    pub fn run_block(&mut self, series: impl Into<Series>, block: &mut Block<'_>, budget: &Budget) {
         // Nobody moves in a chain: nobody is advised again and again.
         let Series { seed, .. } = series.into();
         match &mut self.kind {
-            RunnerKind::StepChain(chain) => chain.run(self.prepared, seed, block, budget),
-            RunnerKind::JumpChain(chain) => chain.run(self.prepared, seed, block, budget),
+            RunnerKind::StepChain(chain) => chain.run(self.setup, seed, block, budget),
+            RunnerKind::JumpChain(chain) => chain.run(self.setup, seed, block, budget),
             RunnerKind::Steps(_) | RunnerKind::Events(_) => {}
         }
     }
 
     /// Steps or jumps made since this was asked last, of all lanes.
-    pub(super) fn take_steps(&mut self) -> u64 {
+    pub fn take_steps(&mut self) -> u64 {
         std::mem::take(match &mut self.kind {
             RunnerKind::Steps(batch) => &mut batch.steps,
             RunnerKind::Events(batch) => &mut batch.steps,

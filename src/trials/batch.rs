@@ -11,7 +11,7 @@ use crate::kernel::{Address, Program, Run};
 const JUMPS_BETWEEN_LOOKS: u32 = 256;
 
 /// The monitors of all lanes: they watch the trials and keep the result of each.
-pub(super) trait Monitors {
+pub trait Monitors {
     /// A trial begins in a lane; `shrunk` says whether radii were shrunk at its start.
     fn start(&mut self, lane: usize, shrunk: bool);
 
@@ -36,20 +36,21 @@ pub(super) trait Monitors {
 }
 
 /// Lanes and their monitors.
-pub(super) struct Batch<'s, M> {
+pub struct Batch<'s, M> {
     run: Run<'s>,
-    pub(super) monitors: M,
+    /// What watches the trials.
+    pub monitors: M,
     /// The place in the request of the trial of each lane.
     places: [Option<usize>; LANES],
     /// Rounds between two looks at the clock.
     between_looks: u32,
     /// Steps or jumps made, of all lanes.
-    pub(super) steps: u64,
+    pub steps: u64,
 }
 
 impl<'s, M: Monitors> Batch<'s, M> {
     /// An empty batch of trials of a program.
-    pub(super) fn new(program: &'s Program, monitors: M) -> Self {
+    pub fn new(program: &'s Program, monitors: M) -> Self {
         let between_looks = if program.scenario.clock.is_jumps() {
             JUMPS_BETWEEN_LOOKS
         } else {
@@ -59,11 +60,7 @@ impl<'s, M: Monitors> Batch<'s, M> {
     }
 
     /// Runs trials until `next` gives no more, or the budget says stop; then unfinished trials are cut.
-    pub(super) fn run<'c>(
-        &mut self,
-        next: &mut dyn FnMut() -> Option<(usize, Address<'c>)>,
-        budget: &Budget,
-    ) {
+    pub fn run<'c>(&mut self, next: &mut dyn FnMut() -> Option<(usize, Address<'c>)>, budget: &Budget) {
         let (mut exhausted, mut rounds) = (false, 0u32);
         loop {
             let mut fresh = Mask::NONE;
