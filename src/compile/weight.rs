@@ -5,75 +5,12 @@
 
 use super::elaborator::{Elaborator, Lowered, MOST_NODES};
 use super::typed::Typed;
-use crate::model::{Bool, Num, Place, Process, Timing};
+use crate::model::visit::Part;
+use crate::model::{Bool, Num, Process, Timing};
 use crate::syntax::source::Span;
 
 /// How deep an expression may be that is copied: what walks it does so on the stack.
 const DEEPEST: u32 = 4000;
-
-/// A part of an expression.
-enum Part<'p> {
-    Num(&'p Num),
-    Bool(&'p Bool),
-    Place(&'p Place),
-}
-
-impl<'p> Part<'p> {
-    /// The parts that it is made of.
-    fn parts(&self, mut tell: impl FnMut(Part<'p>)) {
-        match *self {
-            Self::Num(num) => match num {
-                Num::Coordinate(_, place) | Num::Depth(place, _) => tell(Part::Place(place)),
-                Num::Distance(a, b) => {
-                    tell(Part::Place(a));
-                    tell(Part::Place(b));
-                }
-                Num::Apply(_, a) | Num::Fold(_, _, a) => tell(Part::Num(a)),
-                Num::Combine(_, a, b) => {
-                    tell(Part::Num(a));
-                    tell(Part::Num(b));
-                }
-                Num::Count(_, condition) => tell(Part::Bool(condition)),
-                Num::If(condition, a, b) => {
-                    tell(Part::Bool(condition));
-                    tell(Part::Num(a));
-                    tell(Part::Num(b));
-                }
-                Num::Constant(_)
-                | Num::Time
-                | Num::Variable(_)
-                | Num::Of(..)
-                | Num::OfTwo(..)
-                | Num::OfSet(..)
-                | Num::Crossings(..)
-                | Num::Voronoi(_) => {}
-            },
-            Self::Bool(truth) => match truth {
-                Bool::Compare(_, a, b) => {
-                    tell(Part::Num(a));
-                    tell(Part::Num(b));
-                }
-                Bool::Not(a) | Bool::Forall(_, a) | Bool::Exists(_, a) => tell(Part::Bool(a)),
-                Bool::And(list) | Bool::Or(list) => list.iter().for_each(|one| tell(Part::Bool(one))),
-                Bool::Iff(a, b) => {
-                    tell(Part::Bool(a));
-                    tell(Part::Bool(b));
-                }
-                Bool::Constant(_)
-                | Bool::Present(_)
-                | Bool::In(..)
-                | Bool::Contact(_)
-                | Bool::Touching(..) => {}
-            },
-            Self::Place(place) => {
-                if let Place::Point(x, y) = place {
-                    tell(Part::Num(x));
-                    tell(Part::Num(y));
-                }
-            }
-        }
-    }
-}
 
 /// Size and depth of an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,7 +32,12 @@ impl Weight {
             if weight.nodes > MOST_NODES || depth > DEEPEST {
                 break;
             }
-            part.parts(|inner| open.push((inner, depth + 1)));
+            part.parts(&mut |inner| {
+                // Agents and sets are no larger than a number.
+                if !matches!(inner, Part::Set(_) | Part::Who(_)) {
+                    open.push((inner, depth + 1));
+                }
+            });
         }
         weight
     }
@@ -157,7 +99,7 @@ impl Elaborator<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Arithmetic, Comparison};
+    use crate::model::{Arithmetic, Comparison, Place};
 
     fn sum(a: Num, b: Num) -> Num {
         Num::Combine(Arithmetic::Add, Box::new(a), Box::new(b))

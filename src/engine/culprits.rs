@@ -1,7 +1,6 @@
 //! Who made a condition true or false, or gave a number its value, in one state.
 
 use super::grounds::Asked;
-use super::instance::{instantiate_bool, instantiate_num};
 use super::prepared::PreparedWorld;
 use crate::kernel::{Code, Readings, State};
 use crate::model::{AgentId, Bool, Num, Scenario, Set, Who};
@@ -182,7 +181,7 @@ impl<'s> Search<'s> {
                     return;
                 }
                 let members = self.members(set);
-                for (id, one) in self.those(&members, truth, |id| instantiate_bool(body, 0, id)) {
+                for (id, one) in self.those(&members, truth, |id| body.of_member(id)) {
                     self.is_member |= self.found.is_empty();
                     let is_first = self.found.is_empty() || self.found.first() == Some(&id);
                     self.name(id);
@@ -245,7 +244,7 @@ impl<'s> Search<'s> {
             // Those who were counted.
             Num::Count(set, body) if !matches!(**body, Bool::Constant(_)) => {
                 let members = self.members(set);
-                for (id, _) in self.those(&members, true, |id| instantiate_bool(body, 0, id)) {
+                for (id, _) in self.those(&members, true, |id| body.of_member(id)) {
                     if self.found.len() < NAMED {
                         self.name(id);
                     }
@@ -261,7 +260,7 @@ impl<'s> Search<'s> {
         };
         let mut best: Option<(AgentId, f64)> = None;
         for some in in_chunks(&self.members(set)) {
-            let values: Vec<Num> = some.iter().map(|id| instantiate_num(body, 0, *id)).collect();
+            let values: Vec<Num> = some.iter().map(|id| body.of_member(*id)).collect();
             for (id, value) in some.iter().zip(self.values(&values)) {
                 let better = |best: f64| if smallest { value < best } else { value > best };
                 // What is not a number comes last.
@@ -290,7 +289,7 @@ impl Asked for Search<'_> {
 
     fn first(&self, set: &Set, body: &Bool, truth: bool) -> Option<AgentId> {
         let members = self.members(set);
-        self.those(&members, truth, |id| instantiate_bool(body, 0, id)).first().map(|(id, _)| *id)
+        self.those(&members, truth, |id| body.of_member(id)).first().map(|(id, _)| *id)
     }
 }
 

@@ -348,7 +348,7 @@ impl<'p, B: Iterator<Item = Block<'p>>> Task<'p, '_, B> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::chains::prepared;
+    use crate::engine::tests::prepared;
     use std::time::Duration;
 
     #[test]

@@ -1,6 +1,5 @@
 //! Why a condition of one state is as it is: the smallest parts of it, as they were written, that decide.
 
-use super::instance::instantiate_bool;
 use crate::compile::study::{Form, Part};
 use crate::model::{AgentId, Bool, Scenario, Set, VariableId};
 use std::collections::BTreeSet;
@@ -27,7 +26,7 @@ impl Ground<'_> {
 
 /// What is said of running agents, said of these.
 fn of_these(truth: Bool, given: &[AgentId]) -> Bool {
-    given.iter().fold(truth, |truth, id| instantiate_bool(&truth, 0, *id))
+    given.iter().fold(truth, |truth, id| truth.of_member(*id))
 }
 
 /// What can be asked of a state.

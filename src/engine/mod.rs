@@ -4,8 +4,6 @@ mod answer;
 mod blame;
 mod call;
 mod cause;
-#[cfg(test)]
-mod chains;
 mod checkpoints;
 mod compare;
 mod culprits;
@@ -18,7 +16,6 @@ mod flaw;
 mod forecast;
 pub mod given;
 mod grounds;
-mod instance;
 mod method;
 pub mod outcome;
 mod pilot;
@@ -33,6 +30,8 @@ pub mod shards;
 mod splitting;
 mod tables;
 mod tally;
+#[cfg(test)]
+mod tests;
 pub mod traces;
 mod trial;
 mod watch;

@@ -7,6 +7,7 @@ use super::expression::{Arithmetic, Bool, Comparison, Function, Num, Place, Who}
 use super::function::Field;
 use super::index::VariableId;
 use super::process::{Command, Process, Timing};
+use super::visit::Part;
 use crate::base::math;
 use std::collections::BTreeSet;
 
@@ -114,51 +115,45 @@ impl Command {
     }
 }
 
+impl Part<'_> {
+    /// Adds the variables that it reads; whether it depends on nothing else.
+    fn reads(self, into: &mut BTreeSet<VariableId>) -> bool {
+        if let Self::Num(Num::Variable(id)) = self {
+            into.insert(*id);
+            return true;
+        }
+        self.is_composed() && self.all(&mut |part| part.reads(into))
+    }
+
+    /// Whether it is made of what is the same everywhere, and of some numbers.
+    fn is_made_of(self, number: fn(&Num) -> bool) -> bool {
+        let is_of_parts = match self {
+            Self::Num(num) => matches!(num, Num::Distance(..) | Num::Coordinate(..) | Num::Depth(..)),
+            Self::Place(place) => matches!(place, Place::Point(..) | Place::Region(_) | Place::Barrier(_)),
+            _ => false,
+        };
+        if is_of_parts || self.is_composed() {
+            return self.all(&mut |part| part.is_made_of(number));
+        }
+        matches!(self, Self::Num(num) if number(num))
+    }
+}
+
 impl Num {
     /// Adds the variables that it reads; whether it depends on nothing else.
     pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
-        match self {
-            Self::Constant(_) => true,
-            Self::Variable(id) => {
-                into.insert(*id);
-                true
-            }
-            Self::Apply(_, a) => a.reads(into),
-            Self::Combine(_, a, b) => a.reads(into) & b.reads(into),
-            Self::If(condition, a, b) => condition.reads(into) & a.reads(into) & b.reads(into),
-            _ => false,
-        }
+        Part::Num(self).reads(into)
     }
 
     /// Whether it is surely the same in all states of all trials, though perhaps not known before: how far it is from a
     /// point to a wall.
     pub fn is_fixed(&self) -> bool {
-        self.is_made_of(|_| false)
+        Part::Num(self).is_made_of(|_| false)
     }
 
     /// Whether it is surely the same in all states of a trial: bodies are drawn at the start.
     pub fn is_drawn(&self) -> bool {
-        self.is_made_of(is_of_body)
-    }
-
-    /// Whether it is made of what is the same everywhere, and of some numbers.
-    fn is_made_of(&self, number: fn(&Self) -> bool) -> bool {
-        let place = |place: &Place| match place {
-            Place::Point(x, y) => x.is_made_of(number) && y.is_made_of(number),
-            Place::Region(_) | Place::Barrier(_) => true,
-            Place::Agent(_) | Place::Centroid(_) => false,
-        };
-        match self {
-            Self::Constant(_) => true,
-            Self::Distance(a, b) => place(a) && place(b),
-            Self::Coordinate(_, of) | Self::Depth(of, _) => place(of),
-            Self::Apply(_, a) => a.is_made_of(number),
-            Self::Combine(_, a, b) => a.is_made_of(number) && b.is_made_of(number),
-            Self::If(condition, a, b) => {
-                condition.is_made_of(number) && a.is_made_of(number) && b.is_made_of(number)
-            }
-            _ => number(self),
-        }
+        Part::Num(self).is_made_of(is_of_body)
     }
 
     /// Its value where variables have these values; `None` where it depends on more than variables.
@@ -187,37 +182,19 @@ fn is_of_body(num: &Num) -> bool {
 }
 
 impl Bool {
+    /// Adds the variables that it reads; whether it depends on nothing else.
+    pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
+        Part::Bool(self).reads(into)
+    }
+
     /// Whether it is surely the same in all states of all trials, though perhaps not known before.
     pub fn is_fixed(&self) -> bool {
-        self.is_made_of(|_| false)
+        Part::Bool(self).is_made_of(|_| false)
     }
 
     /// Whether it is surely the same in all states of a trial.
     pub fn is_drawn(&self) -> bool {
-        self.is_made_of(is_of_body)
-    }
-
-    fn is_made_of(&self, number: fn(&Num) -> bool) -> bool {
-        match self {
-            Self::Constant(_) => true,
-            Self::Compare(_, a, b) => a.is_made_of(number) && b.is_made_of(number),
-            Self::Not(a) => a.is_made_of(number),
-            Self::And(all) | Self::Or(all) => all.iter().all(|one| one.is_made_of(number)),
-            Self::Iff(a, b) => a.is_made_of(number) && b.is_made_of(number),
-            _ => false,
-        }
-    }
-
-    /// Adds the variables that it reads; whether it depends on nothing else.
-    pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
-        match self {
-            Self::Constant(_) => true,
-            Self::Compare(_, a, b) => a.reads(into) & b.reads(into),
-            Self::Not(a) => a.reads(into),
-            Self::Iff(a, b) => a.reads(into) & b.reads(into),
-            Self::And(all) | Self::Or(all) => all.iter().fold(true, |so_far, one| so_far & one.reads(into)),
-            _ => false,
-        }
+        Part::Bool(self).is_made_of(is_of_body)
     }
 
     /// Its value where variables have these values; `None` where it depends on more than variables.

@@ -8,9 +8,7 @@ pub mod expression;
 pub mod function;
 mod index;
 pub mod kind;
-mod lacking;
 pub mod law;
-pub mod mention;
 pub mod moves;
 pub mod parameter;
 pub mod period;
@@ -21,6 +19,7 @@ pub mod scene;
 pub mod sight;
 pub mod source;
 pub mod stepper;
+pub mod visit;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
 pub use behaviour::{Amount, Attached, Behaviour, Behaviours, Conduct, Mode, Transition, Trigger};
