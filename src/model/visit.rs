@@ -280,4 +280,25 @@ mod tests {
         all.mentions(&mut |id| named.push(id.0));
         assert_eq!(named, [2, 4, 7]);
     }
+
+    #[test]
+    fn of_a_member_the_outermost_running_agent_is_said_and_inner_ones_move_up() {
+        let apart = |a, b| Num::Distance(Place::Agent(a), Place::Agent(b));
+        let set = |except| Set { members: [AgentId(1), AgentId(2)].into(), except: Some(except) };
+        let within = |outer, inner, set| Num::Fold(Fold::Min, set, Box::new(apart(outer, inner)));
+        let body = within(Who::Running(0), Who::Running(1), set(Who::Running(0)));
+        let one = Who::Agent(AgentId(5));
+        assert_eq!(body.of_member(AgentId(5)), within(one, Who::Running(0), set(one)));
+    }
+
+    #[test]
+    fn means_and_centroids_may_lack_a_value_wherever_they_stand() {
+        let set = || Set { members: [AgentId(1)].into(), except: None };
+        let speed = || Box::new(Num::Of(Field::Speed, Who::Running(0)));
+        let from_middle = Num::Distance(Place::Centroid(set()), Place::Agent(Who::Agent(AgentId(0))));
+        let near = Bool::Compare(Comparison::Less, Box::new(from_middle), Box::new(Num::Constant(1.0)));
+        assert!(near.may_lack_value() && Num::Count(set(), Box::new(near)).may_lack_value());
+        assert!(Num::Fold(Fold::Mean, set(), speed()).may_lack_value());
+        assert!(!Num::Fold(Fold::Max, set(), speed()).may_lack_value());
+    }
 }
