@@ -12,8 +12,13 @@ use proptest::prelude::*;
 /// The prepared world of a scenario with one question for each formula, and the columns of the questions.
 pub(in crate::engine) fn prepared(scenario: &str, formulas: &[String]) -> PreparedWorld {
     let questions: Vec<String> = formulas.iter().map(|f| format!("estimate P({f}) within 0.1\n")).collect();
+    asked(scenario, &questions.concat())
+}
+
+/// The prepared world of a scenario with the queries of a property file.
+pub(in crate::engine) fn asked(scenario: &str, properties: &str) -> PreparedWorld {
     let sources =
-        [Source::new(SourceId(0), "m.scn", scenario), Source::new(SourceId(1), "p.bltl", questions.concat())];
+        [Source::new(SourceId(0), "m.scn", scenario), Source::new(SourceId(1), "p.bltl", properties)];
     let (scenario, _) = parse_scenario(&sources[0]);
     let (properties, _) = parse_properties(&sources[1]);
     let input = Input {

@@ -1,9 +1,7 @@
 //! The cap of jumps, made small.
 
 use super::*;
-use crate::compile::{Files, Input, compile};
-use crate::syntax::parse::{parse_properties, parse_scenario};
-use crate::syntax::source::{Source, SourceId};
+use crate::engine::tests::asked;
 use crate::trials::budget::Budget;
 use crate::trials::cell::Reading;
 use crate::trials::runner::Runner;
@@ -18,18 +16,7 @@ process blinker[2] { var on = false
 "#;
 
 fn prepared(question: &str) -> PreparedWorld {
-    let sources = [Source::new(SourceId(0), "m.scn", RESTLESS), Source::new(SourceId(1), "p.bltl", question)];
-    let (scenario, _) = parse_scenario(&sources[0]);
-    let (properties, _) = parse_properties(&sources[1]);
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &Files::default(),
-        settings: &[],
-    };
-    let (study, faults) = compile(&input);
-    PreparedWorld::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
+    asked(RESTLESS, question)
 }
 
 #[test]
