@@ -49,7 +49,7 @@ fn main() -> ExitCode {
         limit("  with a slip inside", best(|| drop(parse_properties(&wrong))) * 1e3, 400.0, "ms");
     }
     let processes = |count: usize| {
-        let one = |k| format!("process p{k}[1000] {{ var n: 0 .. 1 = 0  when n == 0 -> n = 1 }}\n");
+        let one = |k| format!("process p{k}[1000] {{ var n: 0 .. 1 = 0; when n == 0 -> n = 1 }}\n");
         format!("horizon = 10 steps\n{}", (0..count).map(one).collect::<String>())
     };
     limit("growth with processes", growth(|n| errors(&processes(n)), 10), 9.0, "");

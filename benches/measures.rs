@@ -15,9 +15,9 @@ use std::time::Instant;
 fn hall(people: usize) -> String {
     format!(
         "horizon = 60 s\nstep = 0.02 s\nscene {{ wall (0, 0) -- (10, 0) -- (10, 10) -- (0, 10) -- (0, 0)\n\
-         region hall: rect (0, 0) .. (10, 10)  line door: (5, 0) -- (5, 10) }}\n\
+         region hall: rect (0, 0) .. (10, 10); line door: (5, 0) -- (5, 10) }}\n\
          kind person: sfm preset helbing2000 {{ noise = 0.1 m/s; radius = 0.2 m }}\n\
-         agents crowd[{people}]: person {{ at = uniform in rect (0.3, 0.3) .. (9.7, 9.7)  route = (9, 5) -> (1, 5) }}\n"
+         agents crowd[{people}]: person {{ at = uniform in rect (0.3, 0.3) .. (9.7, 9.7); route = (9, 5) -> (1, 5) }}\n"
     )
 }
 

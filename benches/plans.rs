@@ -177,8 +177,8 @@ fn main() {
             }}
             kind planner: planned {{ limit speed = uniform(1.2 m/s, 1.8 m/s) }}
             kind plain: sfm preset helbing2000 {{ radius = 0.25 m }}
-            agents first[15]: {first} {{ at = uniform in start  route = goal }}
-            agents others[30]: plain {{ at = uniform in other  route = start }}"
+            agents first[15]: {first} {{ at = uniform in start; route = goal }}
+            agents others[30]: plain {{ at = uniform in other; route = start }}"
         );
         Model::parse(&text).unwrap_or_else(|errors| panic!("{errors}"))
     };

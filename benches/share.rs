@@ -31,7 +31,7 @@ scene {
   region all: rect (0, 0) .. (SIDE, SIDE)
   region far: rect (1000, 0) .. (1001, 400)
 }
-agents z[PEOPLE]: adult { at = uniform in all  route = far }
+agents z[PEOPLE]: adult { at = uniform in all; route = far }
 ";
 
 /// What is asked of everybody; none of it ends a trial.

@@ -91,8 +91,8 @@ fn corridor(gait: &str) -> f64 {
           wall (0, 0) -- (30, 0)\n wall (0, 6) -- (30, 6)
           region west: rect (1, 0.5) .. (12, 5.5)\n region east: rect (18, 0.5) .. (29, 5.5) }}
         kind walker: stepped {{ gait = {gait} }}
-        agents right[10]: walker {{ at = uniform in west  route = east }}
-        agents left[10]: walker {{ at = uniform in east  route = west }}"
+        agents right[10]: walker {{ at = uniform in west; route = east }}
+        agents left[10]: walker {{ at = uniform in east; route = west }}"
     );
     let mut draft = Draft::new("corridor.scn", text);
     if gait != "synthetic" {

@@ -20,7 +20,7 @@ fn building(rows: usize, columns: usize) -> (String, usize) {
     let mut walls = String::new();
     let mut count = 0;
     let mut wall = |a: (f64, f64), b: (f64, f64)| {
-        let _ = writeln!(walls, "  wall ({}, {}) -- ({}, {})", a.0, a.1, b.0, b.1);
+        let _ = writeln!(walls, "; wall ({}, {}) -- ({}, {})", a.0, a.1, b.0, b.1);
         count += 1;
     };
     for row in 0..rows {
@@ -43,10 +43,10 @@ fn model(agents: usize, wayfinding: &str) -> (Model, usize) {
     let (rows, columns) = (10, 16);
     let (walls, count) = building(rows, columns);
     let text = format!(
-        "horizon = 60 s\nstep = 0.04 s\nscene {{\n{walls}  region exit: rect (-9, 60) .. (-4, 80)\n
+        "horizon = 60 s\nstep = 0.04 s\nscene {{\n{walls}; region exit: rect (-9, 60) .. (-4, 80)\n
         region all: rect (0, 0) .. (160, 140) }}
-        kind person: sfm preset helbing2000 {{ radius = uniform(0.2 m, 0.3 m)  noise = 0.05 m/s {wayfinding} }}
-        agents people[{agents}]: person {{ at = uniform in all  route = exit }}"
+        kind person: sfm preset helbing2000 {{ radius = uniform(0.2 m, 0.3 m); noise = 0.05 m/s {wayfinding} }}
+        agents people[{agents}]: person {{ at = uniform in all; route = exit }}"
     );
     (Draft::new("building.scn", text).parse().unwrap_or_else(|errors| panic!("{errors}")), count)
 }

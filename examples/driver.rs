@@ -12,8 +12,8 @@ const SCENARIO: &str = "
     step = 0.05 s
     kind adult: sfm preset helbing2000
     kind slow: adult { speed = 1 m/s }
-    agent robot: adult { at = (-6, 0)  route = (-2, 0) -> (6, 0) }
-    agents crowd[6]: slow { at = uniform in rect (-1, -12) .. (1, -4)  route = (0, 15) }
+    agent robot: adult { at = (-6, 0); route = (-2, 0) -> (6, 0) }
+    agents crowd[6]: slow { at = uniform in rect (-1, -12) .. (1, -4); route = (0, 15) }
 ";
 
 /// Stands at the end of the first leg while anybody is within 2.5 m of the crossing.

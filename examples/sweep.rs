@@ -16,7 +16,7 @@ const SCENARIO: &str = "
       region beyond: rect (1, -3) .. (6, 3)
     }
     kind adult: sfm preset helbing2000
-    agents crowd[8]: adult { at = uniform in rect (-5, -2) .. (-1, 2)  route = (0.4, 0) -> (4, 0) }
+    agents crowd[8]: adult { at = uniform in rect (-5, -2) .. (-1, 2); route = (0.4, 0) -> (4, 0) }
 ";
 
 const QUERIES: &str = "

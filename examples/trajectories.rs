@@ -11,8 +11,8 @@ const SCENARIO: &str = "
     horizon = 10 s
     step = 0.02 s
     kind adult: sfm preset helbing2000 { noise = 0.2 m/s }
-    agent user: adult { at = (0, 0)  route = (8, 0) }
-    agents oncoming[3]: adult { at = uniform in rect (6, -1) .. (9, 1)  route = (-2, 0) }
+    agent user: adult { at = (0, 0); route = (8, 0) }
+    agents oncoming[3]: adult { at = uniform in rect (6, -1) .. (9, 1); route = (-2, 0) }
 ";
 
 fn main() -> Result<(), Diagnostics> {

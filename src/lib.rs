@@ -12,7 +12,7 @@
 //!     horizon = 5 s
 //!     step = 0.02 s
 //!     kind adult: sfm preset smc1 { noise = 0.1 m/s }
-//!     agent user: adult { at = (0, 0)  route = (20, 0) }
+//!     agent user: adult { at = (0, 0); route = (20, 0) }
 //! ")?;
 //! let queries = "check P(F<=5 s (travelled(user) > 4 m)) >= 0.9";
 //! let report = model.check(queries, &Options::default().seed(1).max_trials(10_000))?;

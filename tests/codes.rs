@@ -65,7 +65,7 @@ param density = 0.4 /m^2 in 0 /m^2 .. 2 /m^2
 region hall: rect (30, 0.3) .. (39, 9.7)
 region exit: rect (18.5, 0) .. (20, 4)
 kind adult: sfm preset helbing2000
-agent user: adult { at = (-1, 2)  route = exit }
+agent user: adult { at = (-1, 2); route = exit }
 agent friend: adult { at = (-1, 3) }
 agents crowd[3]: adult { at = uniform in hall }
 process die { var s: 0 .. 7 = 0 }
@@ -73,7 +73,7 @@ process sensor { var failed = false }
 ";
 /// The same for examples about a queue, in continuous time.
 const QUEUE: &str = "horizon = 10 s
-process queue { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1 }
+process queue { var n: 0 .. 5 = 0; when n < 5 at 1 /s -> n = n + 1 }
 ";
 /// The same in a property file. What is about agents is left out beside a queue.
 const PROPERTIES: &str = "property safe = G<=5 s (clearance(user) > 0 m)
@@ -112,16 +112,16 @@ fn framed(lines: &[&str], asks: bool) -> Option<[String; 2]> {
                 (&mut properties, line.to_owned())
             }
             "mass" | "speed" | "route" => {
-                (&mut scenario, format!("agent other: adult {{ at = (-9, -9)  {line} }}"))
+                (&mut scenario, format!("agent other: adult {{ at = (-9, -9); {line} }}"))
             }
             "when" => (
                 &mut scenario,
-                format!("process other {{ var s: 0 .. 7 = 0  var n: 0 .. 7 = 0  var up = true  {line} }}"),
+                format!("process other {{ var s: 0 .. 7 = 0; var n: 0 .. 7 = 0; var up = true; {line} }}"),
             ),
             "state" => (
                 &mut scenario,
                 format!(
-                    "behaviour other {{ {line}  state attentive {{ }} }}\n\
+                    "behaviour other {{ {line}; state attentive {{ }} }}\n\
                      agent another: adult with other {{ at = (-9, -9) }}"
                 ),
             ),

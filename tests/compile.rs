@@ -50,7 +50,7 @@ fn the_corridor_is_understood() {
 /// Somebody alone and two more, with parameters.
 const THREE: &str = "scenario \"three\"\nhorizon = 2 s\nstep = 0.1 s\nparam n = 1\nparam m = 1\n\
     scene { region hall: rect (0, 0) .. (10, 10) }\nkind adult: sfm preset helbing2000\n\
-    agent me: adult { at = (1, 1)  route = hall }\nagents crowd[2]: adult { at = uniform in hall  route = hall }\n";
+    agent me: adult { at = (1, 1); route = hall }\nagents crowd[2]: adult { at = uniform in hall; route = hall }\n";
 
 fn understood(scenario: &str, properties: &str) -> Study {
     let (study, found) = compiled(scenario, properties);
@@ -125,7 +125,7 @@ fn numbers_of_people_suffice_for_all_who_may_come() {
     // About 1000 come; more than 1024 do in every fifth trial, more than 2048 in none.
     for (limit, most) in [(100, 2048), (999, 2048), (1000, 2048), (1024, 2048), (3000, 4096)] {
         let text = format!(
-            "{THREE}source doors: adult {{ at = uniform in hall  every = exponential(0.1 s)  route = hall  limit = {limit} }}"
+            "{THREE}source doors: adult {{ at = uniform in hall; every = exponential(0.1 s); route = hall; limit = {limit} }}"
         )
         .replace("horizon = 2 s", "horizon = 100 s");
         let study = understood(&text, "");
@@ -140,7 +140,7 @@ fn bounds_between_ticks_make_those_of_their_own_world_finer() {
     let properties: String =
         rates.iter().map(|r| format!("estimate P(F<=(1 s / r) (p.n == 1)) under r = {r}\n")).collect();
     let scenario =
-        "horizon = 10 s\nparam r = 1\nprocess p { var n: 0..1 = 0  when n == 0 at 1 /s -> n = 1 }\n";
+        "horizon = 10 s\nparam r = 1\nprocess p { var n: 0..1 = 0; when n == 0 at 1 /s -> n = 1 }\n";
     let study = understood(scenario, &properties);
     let mut ticks: Vec<(String, u64)> = Vec::new();
     for world in &study.worlds {
@@ -157,7 +157,7 @@ fn more_people_than_there_are_numbers_are_refused() {
     let doors = |count: usize| -> String {
         let door = |k: usize| {
             format!(
-                "source s{k}: adult {{ at = uniform in hall  every = exponential(0.01 s)  route = hall  limit = 1 }}\n"
+                "source s{k}: adult {{ at = uniform in hall; every = exponential(0.01 s); route = hall; limit = 1 }}\n"
             )
         };
         THREE.replace("horizon = 2 s", "horizon = 6000 s") + &(0..count).map(door).collect::<String>()
@@ -262,19 +262,19 @@ fn after_many_unknown_names_nobody_guesses_what_they_mean() {
 fn states_of_many_processes_are_walked_as_far_as_they_fit() {
     // 2^17 joint states of a thousand variables would be a gigabyte.
     let wide = "horizon = 100000 steps\n\
-        process coin[17] { var n: 0..1 = 0  when true -> 1/2: n = 0 | 1/2: n = 1 }\n\
-        process still[983] { var k: 0..1 = 0  when k == 0 -> k = 1 }\n";
+        process coin[17] { var n: 0..1 = 0; when true -> 1/2: n = 0 | 1/2: n = 1 }\n\
+        process still[983] { var k: 0..1 = 0; when k == 0 -> k = 1 }\n";
     understood(wide, "estimate P(F<=3 coin[1].n == 1)");
     // Fewer are walked to where it goes wrong.
     let wrong = "horizon = 10 steps\n\
-        process coin[2] { var n: 0..1 = 0  when true -> 1/2: n = 0 | 1/2: n = 1 }\n\
-        process still[900] { var k: 0..1 = 0  when k == 0 -> k = 1 }\n\
-        process late { var n: 0..5 = 0  when true -> n = n + 1 }\n";
+        process coin[2] { var n: 0..1 = 0; when true -> 1/2: n = 0 | 1/2: n = 1 }\n\
+        process still[900] { var k: 0..1 = 0; when k == 0 -> k = 1 }\n\
+        process late { var n: 0..5 = 0; when true -> n = n + 1 }\n";
     refused(wrong, "", "E0903");
     // How far depends on what there is to compute in a state.
     let sum = |copies: usize| {
         format!(
-            "horizon = 100000 steps\nprocess p[{copies}] {{ var n: 0 .. 1000 = 0  let all = sum(q.n for q in p)\n\
+            "horizon = 100000 steps\nprocess p[{copies}] {{ var n: 0 .. 1000 = 0; let all = sum(q.n for q in p)\n\
              when all >= 0 -> n = n + 1 }}\n"
         )
     };
@@ -284,7 +284,7 @@ fn states_of_many_processes_are_walked_as_far_as_they_fit() {
 
 #[test]
 fn many_copies_of_many_processes_are_understood() {
-    let one = |k| format!("process p{k}[1000] {{ var n: 0 .. 1 = 0  when n == 0 -> n = 1 }}\n");
+    let one = |k| format!("process p{k}[1000] {{ var n: 0 .. 1 = 0; when n == 0 -> n = 1 }}\n");
     understood(&format!("horizon = 10 steps\n{}", (0..40).map(one).collect::<String>()), "");
 }
 
@@ -309,25 +309,25 @@ fn what_never_changes_may_be_a_constant() {
 
 #[test]
 fn names_of_a_process_are_known_before_it_where_they_do_not_change() {
-    let scenario = "horizon = 10 steps\nprocess a { var n: 0 .. 5 = b.k  when n < 5 -> n = n + 1 }\n\
-        process b { let k = 2  var m: 0 .. 5 = 1 }\n";
+    let scenario = "horizon = 10 steps\nprocess a { var n: 0 .. 5 = b.k; when n < 5 -> n = n + 1 }\n\
+        process b { let k = 2; var m: 0 .. 5 = 1 }\n";
     let study = understood(scenario, "");
     assert_eq!(study.worlds[0].scenario.processes.variables[0].initial, 2.0);
     // A constant is meant where a variable takes its first value from one of its name.
     let scenario =
-        "horizon = 10 steps\nconst n = 3\nprocess a { var n: 0 .. 5 = n  when n < 5 -> n = n + 1 }\n";
+        "horizon = 10 steps\nconst n = 3\nprocess a { var n: 0 .. 5 = n; when n < 5 -> n = n + 1 }\n";
     assert_eq!(understood(scenario, "").worlds[0].scenario.processes.variables[0].initial, 3.0);
 }
 
 #[test]
 fn what_is_known_now_is_computed_now() {
     let scenario = "scenario \"k\"\nhorizon = 2 s\nstep = 0.1 s\nconst k = modulo(7, 2)\nconst j = if(k > 0, 2, 3)\n\
-        scene { point base: (1, 1)  region hall: circle (base * 2 - (1, 0)) radius norm((3, 4)) }\n\
+        scene { point base: (1, 1); region hall: circle (base * 2 - (1, 0)) radius norm((3, 4)) }\n\
         kind adult: sfm preset helbing2000\n\
-        agent me: adult { at = base + (1, 0)  route = hall }\n\
-        agent far: adult { at = (base + (7, 3)) / 2  route = hall }\n\
-        agents crowd[j]: adult { at = uniform in hall  route = hall }\n\
-        agents more[distance(base, (4, 5)) / 1 m]: adult { at = uniform in hall  route = hall }\n\
+        agent me: adult { at = base + (1, 0); route = hall }\n\
+        agent far: adult { at = (base + (7, 3)) / 2; route = hall }\n\
+        agents crowd[j]: adult { at = uniform in hall; route = hall }\n\
+        agents more[distance(base, (4, 5)) / 1 m]: adult { at = uniform in hall; route = hall }\n\
         moves me for 1 s { heading atan2(1, 1) }\n";
     let study = understood(scenario, "");
     let scenario = &study.worlds[0].scenario;
@@ -360,7 +360,7 @@ fn what_is_known_now_is_computed_now() {
 fn a_behaviour_may_be_called_as_a_coordinate() {
     let scenario = THREE.replace(
         "agents crowd[2]: adult {",
-        "behaviour x { state one { after 0.3 s -> two } state two { } }\nagents crowd[2]: adult with x {",
+        "behaviour x { state one { after 0.3 s -> two }; state two { } }\nagents crowd[2]: adult with x {",
     );
     for formula in ["crowd[1].x == two", "exists a in crowd: a.x == two", "position(crowd[1]).x > 1 m"] {
         understood(&scenario, &format!("estimate P(F<=1 s ({formula}))"));
@@ -388,23 +388,23 @@ fn what_is_checked_though_nobody_uses_it_refuses_nothing_sound() {
         "process p {\n var n: 0 .. 5 = 0\n let area(k) = k * 2\n let f(k) = area(k) < 3\n when f(n) -> n = n\n}\n\
          behaviour b { state s { after 1 s -> s } }\n",
         "let distance(a, b) = 3\n\
-         behaviour b { let near(a) = distance(self, a) < 4  state s { when near(me) -> t } state t { } }\n",
+         behaviour b { let near(a) = distance(self, a) < 4; state s { when near(me) -> t }; state t { } }\n",
         // A variable of a process has the name of a behaviour.
-        "process desk { var b: 0 .. 5 = 0  when b < 5 -> b = b + 1 }\nlet long(d) = d.b == 5\n\
-         behaviour b { state s { when contact(self) -> t } state t { } }\n",
+        "process desk { var b: 0 .. 5 = 0; when b < 5 -> b = b + 1 }\nlet long(d) = d.b == 5\n\
+         behaviour b { state s { when contact(self) -> t }; state t { } }\n",
         // What conditions say hides no parameter of who has the behaviour.
         "scene { region A: rect (0, 0) .. (2, 2) }\n\
-         behaviour b { let there = self in A  let at(x) = x in A  state s { when there & at(self) -> t } state t { } }\n",
+         behaviour b { let there = self in A; let at(x) = x in A; state s { when there & at(self) -> t }; state t { } }\n",
         // Nobody has it, and what it says of itself is sound.
         "agents nobody[0]: adult with c { at = uniform in hall }\n\
-         behaviour c { let busy = self.c == on  state on { when busy -> off } state off { } }\n\
+         behaviour c { let busy = self.c == on; state on { when busy -> off }; state off { } }\n\
          behaviour b { state s { after 1 s -> s } }\n",
         // A process has a function of the name that another function calls.
-        "let f(x) = x\nprocess p { let f(x) = g(x)  var n: 0 .. 3 = 0  when f(n) < 2 -> n = n }\nlet g(x) = f(x)\n\
+        "let f(x) = x\nprocess p { let f(x) = g(x); var n: 0 .. 3 = 0; when f(n) < 2 -> n = n }\nlet g(x) = f(x)\n\
          behaviour b { state s { after 1 s -> s } }\n",
         // Names without arguments may be called.
-        "let now() = 2 s\nprocess p { var n: 0 .. 3 = 0  let top() = n + 1  when top() < 3 -> n = top() }\n\
-         behaviour b { let t() = now()  state s { after t() -> s } }\n",
+        "let now() = 2 s\nprocess p { var n: 0 .. 3 = 0; let top() = n + 1; when top() < 3 -> n = top() }\n\
+         behaviour b { let t() = now(); state s { after t() -> s } }\n",
     ] {
         let scenario = format!("{head}{more}");
         let (study, found) =
@@ -439,7 +439,7 @@ fn defaults_at_the_ends_of_their_ranges_are_legal() {
 
 #[test]
 fn names_of_a_behaviour_hide_the_own_parameters() {
-    let behaviour = "behaviour b { let speed = 0.25 m/s  state s { speed = speed } }\n";
+    let behaviour = "behaviour b { let speed = 0.25 m/s; state s { speed = speed } }\n";
     let scenario = THREE.replace("agent me: adult {", "agent me: adult with b {") + behaviour;
     let study = understood(&scenario, "estimate P(F<=1 s (speed(me) > 1 m/s))\n");
     let conduct = &study.worlds[0].scenario.behaviours.attached[0].conduct;

@@ -66,7 +66,7 @@ fn told(scenario: &str, properties: &str) -> usize {
 
 #[test]
 fn thousands_of_errors_are_all_reported() {
-    const CLOCK: &str = "horizon = 10 s\nprocess p { var n: 0 .. 5 = 0 when n < 5 at 1 /s -> n = n + 1 }\n";
+    const CLOCK: &str = "horizon = 10 s\nprocess p { var n: 0 .. 5 = 0; when n < 5 at 1 /s -> n = n + 1 }\n";
     type Write = Box<dyn Fn(usize) -> String>;
     type Case = (Write, fn(usize) -> usize);
     let parts = |before: &'static str, part: fn(usize) -> String, after: &'static str| -> Write {
@@ -75,11 +75,11 @@ fn thousands_of_errors_are_all_reported() {
     let scenarios: [Case; 14] = [
         (parts(CLOCK, |k| format!("const a{k} = 1 )\n"), ""), |n| n),
         (parts(CLOCK, |k| format!("}}\nconst a{k} = 1\n"), ""), |n| n),
-        (parts("agent a: b { ", |_| "x = 1 ".to_owned(), "}\n"), |n| n + 2),
+        (parts("agent a: b { ", |_| "x = 1; ".to_owned(), "}\n"), |n| n + 2),
         (
             parts(
                 "scene { ",
-                |_| "wall a: (1, 2) -- (1 2) wall b: (1, 2) -- (1, 2) ".to_owned(),
+                |_| "wall a: (1, 2) -- (1 2); wall b: (1, 2) -- (1, 2); ".to_owned(),
                 "}\nhorizon = 1 s\nstep = 1 s\n",
             ),
             // What could not be read hides neither that the walls between have no length, nor that they are of one name.
@@ -88,7 +88,7 @@ fn thousands_of_errors_are_all_reported() {
         (
             parts(
                 "scene {\n",
-                |k| format!("obstacle a{k}: circel (1, 2) radius 1 m "),
+                |k| format!("obstacle a{k}: circel (1, 2) radius 1 m; "),
                 "\n}\nhorizon = 1 s\nstep = 1 s\n",
             ),
             |n| n,

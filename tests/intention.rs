@@ -11,7 +11,7 @@ const PLACES: &str = "101 0\n1 100\n-99 0\n";
 fn parse(people: &str, places: Option<&str>) -> Result<Model, smc::Diagnostics> {
     let text = format!(
         "horizon = 4 s\nstep = 0.1 s\ntracks here = csv \"a/here.csv\" {{ velocity = seen }}\n\
-         kind adult: sfm preset helbing2000 {{ A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)  noise = 0 m/s  tau = 0.1 s }}\n{people}\n"
+         kind adult: sfm preset helbing2000 {{ A = 0 N; k1 = 0 kg/s^2; k2 = 0 kg/(m s); noise = 0 m/s; tau = 0.1 s }}\n{people}\n"
     );
     let draft = Draft::new("here.scn", text).file("a/here.csv", TABLE);
     match places {
@@ -64,10 +64,10 @@ fn a_field_more_changes_no_draw_of_the_others() {
     let heading = "heading = recorded + normal(0 deg, 12 deg)";
     let speed = "speed = recorded * uniform(0.8, 1.2)";
     let user = |fields: &str| format!("agent user: adult from here at 1 s id 1 {{ {fields} }}\n");
-    let other = format!("agent other: adult from here at 1 s id 2 {{ {heading} {speed} }}");
+    let other = format!("agent other: adult from here at 1 s id 2 {{ {heading}; {speed} }}");
     let none = ends(&(user("") + &other), None, 8);
     let one = ends(&(user(heading) + &other), None, 8);
-    let both = ends(&(user(&format!("{speed} {heading}")) + &other), None, 8);
+    let both = ends(&(user(&format!("{speed}; {heading}")) + &other), None, 8);
     for k in 0..8 {
         assert!((none[k][0] - Vec2::new(1.0, 0.0)).norm() < 1e-12, "unset, everything is as recorded");
         assert_eq!(none[k][1], one[k][1]);
@@ -116,9 +116,9 @@ fn fields_that_say_nothing_of_intentions_are_refused() {
         refused("route = destinations(here)", Some("\n")),
         refused("route = destinations(here)", Some("1 2\n3\n")),
         refused("route = destinations(here)", Some("1 0\n")),
-        refused("route = destinations(here)  heading = recorded + normal(0 deg, 3 deg)", Some(PLACES)),
+        refused("route = destinations(here); heading = recorded + normal(0 deg, 3 deg)", Some(PLACES)),
     ];
     insta::assert_snapshot!(all.join("\n"));
-    let fixed = "agent user: adult { at = (0, 0)  speed = recorded * 2 }";
+    let fixed = "agent user: adult { at = (0, 0); speed = recorded * 2 }";
     assert!(parse(fixed, None).expect_err("no recording").to_string().contains("`recorded`"));
 }

@@ -42,6 +42,7 @@ fn shape(kind: &ExprKind) -> String {
             format!("{}{unit}", q.value)
         }
         ExprKind::Infinity => "∞".to_owned(),
+        ExprKind::Broken => "broken".to_owned(),
         ExprKind::Bool(value) => value.to_string(),
         ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::Name(name) => name.clone(),
@@ -262,7 +263,7 @@ fn scenes_and_values() {
 fn processes() {
     let items = scenario_items(
         "process q[3] {\n\
-           var n: 0 .. 5 = 0  var on: bool = n > 0 & true  var x: real = 1 m / 2\n\
+           var n: 0 .. 5 = 0; var on: bool = n > 0 & true; var x: real = 1 m / 2\n\
            let busy = n > 0 | on; label full = n == 5; choose\n\
            when busy & n < 5 at 1 /s -> 1: { n = n + 1; on = (n > 2 | on) } | 2: { }\n\
            when full after uniform(1 s, 2 s) in 1 s .. 3 s -> n = 0\n\
@@ -283,15 +284,43 @@ fn names_that_are_words_elsewhere() {
 }
 
 #[test]
-fn line_breaks_mean_nothing() {
-    let one = scenario_items(
-        "horizon = 30 s step = 0.02 s const a = 1 const b = a kind k: sfm kind l: k { x = 1 y = 2 }",
-    );
-    let many = scenario_items(
-        "horizon\n=\n30\ns\nstep\n=\n0.02 s\nconst a = 1; const b = a\nkind\nk: sfm\nkind l: k {\nx =\n1 y = 2 }",
-    );
-    assert_eq!(one.len(), 6);
-    assert_eq!(many.len(), 6);
+fn items_end_with_their_lines() {
+    for (count, text) in [
+        (3, "horizon = 30 s\nstep = 0.02 s; const a = 1"),
+        (1, "horizon = 30 s"),
+        // An operator or mark at either end of a line, a bracket that is open, and a word that only continues.
+        (1, "horizon =\n\n  // thirty\n  30 s"),
+        (2, "const a = 1 +\n2\nconst b = a\n- 1"),
+        (1, "let a = max(1,\n2\n)"),
+        (1, "let a = user in\nhall"),
+        (1, "agent a: k from t\nat 3 s\nid 4\nwith b"),
+        (1, "kind k: sfm\n\n{\nradius = 0.3 m\nby = 3 }"),
+        (2, "moves a\nfor 2 s { stop }\nconst by = 3"),
+        (2, "scene {\nwall (0, 0) -- (1, 1)\n-- (2, 2)\nobstacle circle (1, 1)\nradius 2 m }\nlet b = 3"),
+        (1, "process p {\nvar n = 1\nwhen n == 1\nat 2 /s -> 1/2: { n = 2; n = 3 }\n| 1/2: n = 3 }"),
+    ] {
+        assert_eq!(scenario_items(text).len(), count, "{text}");
+    }
+    for (count, text) in [
+        (
+            2,
+            "property a = F<=2 s p\nU q\ncheck P(a)\n>= 0.5\nconfidence 95 %\nby sprt(alpha = 0.1,\nbeta = 0.1)",
+        ),
+        (1, "property a = G<=2 s\n(p & q)"),
+        (1, "compare P(a)\nunder n = 1\nwith n = 2\nwithin 0.1"),
+        (2, "estimate P(a),\nP(b); estimate P(c)"),
+    ] {
+        assert_eq!(property_items(text).len(), count, "{text}");
+    }
+    for text in ["horizon = 3 s step = 1 s", "kind k: sfm { mass = 80 kg radius = 0.3 m }"] {
+        let (_, said) = parse_scenario(&Source::new(SourceId(0), "a.scn", text));
+        assert_eq!(said.len(), 1, "{text}");
+        assert!(
+            said[0].hint.as_ref().is_some_and(|hint| hint.starts_with("write `;`")),
+            "{text}: {:?}",
+            said[0]
+        );
+    }
 }
 
 #[test]

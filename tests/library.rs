@@ -8,8 +8,8 @@ use std::process::Command;
 
 const SCENARIO: &str = "horizon = 6 s\nstep = 0.05 s\nparam n = 2\n\
     kind adult: sfm preset helbing2000 { noise = 0.1 m/s }\n\
-    agent user: adult { at = (0, 0)  route = (20, 0) }\n\
-    agents crowd[n]: adult { at = uniform in rect (5, -2) .. (9, 2)  route = (-5, 0) }\n";
+    agent user: adult { at = (0, 0); route = (20, 0) }\n\
+    agents crowd[n]: adult { at = uniform in rect (5, -2) .. (9, 2); route = (-5, 0) }\n";
 
 #[test]
 fn a_model_gives_the_results_of_the_program() {

@@ -119,9 +119,9 @@ fn times_in_a_region_add_up() {
 
 #[test]
 fn a_line_counts_more_people_than_a_source_has_places() {
-    let text = "horizon = 40 s\nstep = 0.05 s\nscene { line door: (2, -1) -- (2, 1)  region out: rect (4, -1) .. (5, 1) }\n\
+    let text = "horizon = 40 s\nstep = 0.05 s\nscene { line door: (2, -1) -- (2, 1); region out: rect (4, -1) .. (5, 1) }\n\
         kind person: sfm preset helbing2000 { noise = 0 m/s; speed = 1.5 m/s }\n\
-        source gate: person { at = (0, 0)  every = 2 s  limit = 4  route = out then leave }\n";
+        source gate: person { at = (0, 0); every = 2 s; limit = 4; route = out then leave }\n";
     let crossed = series(text, "crossings(door)");
     let last = crossed[crossed.len() - 1];
     assert!((17.0..=20.0).contains(&last), "{last}");
@@ -154,12 +154,12 @@ fn levels_of_service_follow_the_area_per_person() {
 fn crowd(people: usize) -> String {
     let half = people / 2;
     format!(
-        "horizon = 8 s\nstep = 0.05 s\nscene {{ wall (-9, -6) -- (9, -6)  wall (-9, 6) -- (9, 6) -- (9, -6)\n\
-         line door: (0, -3) -- (1, 3)  line far: (4, 6) -- (4, -6)  region hall: rect (-2, -3) .. (3, 2.5)\n\
-         region left: rect (-8, -5) .. (-5, 5)  region right: rect (5, -5) .. (8, 5) }}\n\
+        "horizon = 8 s\nstep = 0.05 s\nscene {{ wall (-9, -6) -- (9, -6); wall (-9, 6) -- (9, 6) -- (9, -6)\n\
+         line door: (0, -3) -- (1, 3); line far: (4, 6) -- (4, -6); region hall: rect (-2, -3) .. (3, 2.5)\n\
+         region left: rect (-8, -5) .. (-5, 5); region right: rect (5, -5) .. (8, 5) }}\n\
          kind person: sfm preset helbing2000 {{ noise = 0.2 m/s; radius = 0.15 m }}\n\
-         agents crowd[{half}]: person {{ at = uniform in rect (-8, -5.5) .. (8, 5.5)  route = left -> right }}\n\
-         agents others[{half}]: person {{ at = uniform in rect (-8, -5.5) .. (8, 5.5)  route = right -> left then leave }}\n"
+         agents crowd[{half}]: person {{ at = uniform in rect (-8, -5.5) .. (8, 5.5); route = left -> right }}\n\
+         agents others[{half}]: person {{ at = uniform in rect (-8, -5.5) .. (8, 5.5); route = right -> left then leave }}\n"
     )
 }
 
@@ -280,12 +280,12 @@ fn measures_are_those_of_pedpy() {
 
 /// Two rooms with a door between them.
 fn room() -> String {
-    "horizon = 12 s\nstep = 0.05 s\nscene { wall (6, 0) -- (6, 2.5)  wall (6, 6) -- (6, 3.5)\n\
+    "horizon = 12 s\nstep = 0.05 s\nscene { wall (6, 0) -- (6, 2.5); wall (6, 6) -- (6, 3.5)\n\
      wall (0, 0) -- (12, 0) -- (12, 6) -- (0, 6) -- (0, 0)\n\
-     line door: (6, 2.5) -- (6, 3.5)  line far: (9, 0) -- (9, 6)  region hall: rect (4, 1.5) .. (7, 4.5)\n\
+     line door: (6, 2.5) -- (6, 3.5); line far: (9, 0) -- (9, 6); region hall: rect (4, 1.5) .. (7, 4.5)\n\
      region goal: rect (10, 1) .. (11.5, 5) }\n\
      kind person: sfm preset helbing2000 { noise = 0.1 m/s; radius = 0.15 m }\n\
-     agents crowd[40]: person { at = uniform in rect (1, 0.3) .. (5.6, 5.7)  route = goal }\n"
+     agents crowd[40]: person { at = uniform in rect (1, 0.3) .. (5.6, 5.7); route = goal }\n"
         .to_owned()
 }
 

@@ -19,10 +19,10 @@ scene {
   region east: rect (11, 0) .. (12, 3)
   region west: rect (0, 0) .. (1, 3)
 }
-kind adult: sfm preset helbing2000 { speed = 1.2 m/s  radius = 0.25 m  noise = 0.1 m/s }
-agent user: adult { at = (1, 1.5)  route = east }
-agents oncoming[people]: adult { at = uniform in rect (8, 0.5) .. (11, 2.5)  route = west }
-moves user for 2 s { stop  heading 20 deg }
+kind adult: sfm preset helbing2000 { speed = 1.2 m/s; radius = 0.25 m; noise = 0.1 m/s }
+agent user: adult { at = (1, 1.5); route = east }
+agents oncoming[people]: adult { at = uniform in rect (8, 0.5) .. (11, 2.5); route = west }
+moves user for 2 s { stop; heading 20 deg }
 "#;
 const NEAR: &str = "let gap(a) = distance(user, a) - 0.5 m
 property apart = G<=6 s (forall a in oncoming: gap(a) > 0.3 m)
@@ -186,8 +186,8 @@ fn trials_without_results_are_played() {
 #[test]
 fn a_crowd_is_thinned_and_the_page_says_so() {
     let scenario = "horizon = 12 s\nstep = 0.1 s\nscene { region hall: rect (0, 0) .. (160, 160) }\n\
-        kind adult: sfm preset helbing2000 { speed = 1.2 m/s  radius = 0.2 m }\n\
-        agents crowd[5000]: adult { at = uniform in hall  route = (2000, 80) }\n";
+        kind adult: sfm preset helbing2000 { speed = 1.2 m/s; radius = 0.2 m }\n\
+        agents crowd[5000]: adult { at = uniform in hall; route = (2000, 80) }\n";
     let place = Place::new(&[("c.scn", scenario)]);
     let said = place.call(&["simulate", "c.scn", "--report", "c.html"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
@@ -208,7 +208,7 @@ fn a_crowd_is_thinned_and_the_page_says_so() {
 #[test]
 fn a_model_without_agents_has_bars_alone() {
     let place = Place::new(&[
-        ("m.scn", "horizon = 20 steps\nprocess p { var x: 0 .. 9 = 0  when x < 9 -> x = x + 1 }\n"),
+        ("m.scn", "horizon = 20 steps\nprocess p { var x: 0 .. 9 = 0; when x < 9 -> x = x + 1 }\n"),
         ("m.bltl", "check P(F<=15 steps (p.x == 9)) >= 0.5\n"),
     ]);
     let (_, page) = checked(&place, &[]);

@@ -178,10 +178,10 @@ fn a_list_of_neighbours_outlives_a_walk_across_the_seam() {
 }
 
 const CORRIDOR: &str = "horizon = 40 s\nstep = 0.02 s\n\
-    scene { periodic x in 2 m .. 12 m  wall (2, 0) -- (12, 0)  wall (2, 3) -- (12, 3)
-      obstacle pillar: circle (11.5, 0.4) radius 0.2 m  region seam: rect (2, 0) .. (3, 3)
-      region last: rect (11, 0) .. (12, 3)  line gate: (2, 0) -- (2, 3)  line middle: (7, 0) -- (7, 3) }\n\
-    kind adult: sfm preset helbing2000 { radius = 0.2 m  speed = 1.3 m/s }\n";
+    scene { periodic x in 2 m .. 12 m; wall (2, 0) -- (12, 0); wall (2, 3) -- (12, 3)
+      obstacle pillar: circle (11.5, 0.4) radius 0.2 m; region seam: rect (2, 0) .. (3, 3)
+      region last: rect (11, 0) .. (12, 3); line gate: (2, 0) -- (2, 3); line middle: (7, 0) -- (7, 3) }\n\
+    kind adult: sfm preset helbing2000 { radius = 0.2 m; speed = 1.3 m/s }\n";
 
 fn model(agents: &str) -> Model {
     Model::parse(&format!("{CORRIDOR}{agents}")).unwrap_or_else(|found| panic!("{found}"))
@@ -189,7 +189,7 @@ fn model(agents: &str) -> Model {
 
 #[test]
 fn somebody_alone_walks_around_with_the_desired_speed() {
-    let model = model("agent me: adult { at = (5, 1.5)  velocity = (1.3, 0) m/s  direction = 0 deg }\n");
+    let model = model("agent me: adult { at = (5, 1.5); velocity = (1.3, 0) m/s; direction = 0 deg }\n");
     for state in model.trial(1, 0).unwrap() {
         let (me, way) = (state.agent("me").unwrap(), 1.3 * state.time);
         let wanted = along_x(2.0, 10.0).wrap(p(5.0 + way, 1.5));
@@ -199,7 +199,7 @@ fn somebody_alone_walks_around_with_the_desired_speed() {
     }
     let open = "horizon = 40 s\nstep = 0.02 s\nscene { periodic y in -3 m .. 4 m }\n\
         kind adult: sfm preset helbing2000 { speed = 1.3 m/s }\n\
-        agent me: adult { at = (5, 3.9)  velocity = (0, -1.3) m/s  direction = -90 deg }\n";
+        agent me: adult { at = (5, 3.9); velocity = (0, -1.3) m/s; direction = -90 deg }\n";
     for state in Model::parse(open).unwrap().trial(1, 0).unwrap() {
         let wanted = along_x(-3.0, 7.0).wrap(p(3.9 - 1.3 * state.time, 0.0)).x;
         let at = state.agent("me").unwrap().position;
@@ -220,7 +220,7 @@ fn assert_hold(model: &Model, formulas: &[&str]) {
 #[test]
 fn functions_of_the_language_take_nearest_images() {
     let model = model(
-        "agent a: adult { at = (11.7, 1.5)  velocity = (1, 0) m/s }\n\
+        "agent a: adult { at = (11.7, 1.5); velocity = (1, 0) m/s }\n\
          agent b: adult { at = (2.1, 1.5) }\n\
          agent c: adult { at = (4.5, 2.5) }\n\
          agents d[2]: adult { at = uniform in circle (7, 1.5) radius 0.5 m }\n",
@@ -254,7 +254,7 @@ fn functions_of_the_language_take_nearest_images() {
 
 #[test]
 fn a_line_at_the_seam_is_crossed_once_and_ways_are_not_wrapped() {
-    let model = model("agent me: adult { at = (11, 1.5)  velocity = (1.3, 0) m/s  direction = 0 deg }\n");
+    let model = model("agent me: adult { at = (11, 1.5); velocity = (1.3, 0) m/s; direction = 0 deg }\n");
     assert_hold(
         &model,
         &[
@@ -272,7 +272,7 @@ fn a_line_at_the_seam_is_crossed_once_and_ways_are_not_wrapped() {
 #[test]
 fn a_group_that_spans_the_seam_has_its_centroid_there() {
     let model = Model::parse(&format!(
-        "{CORRIDOR}group g[3]: adult {{ at = uniform in circle (2.6, 1.5) radius 0.5 m  direction = 180 deg  attraction = 100 N }}\n"
+        "{CORRIDOR}group g[3]: adult {{ at = uniform in circle (2.6, 1.5) radius 0.5 m; direction = 180 deg; attraction = 100 N }}\n"
     ))
     .unwrap();
     assert_hold(
@@ -290,7 +290,7 @@ fn threads_change_no_byte_of_a_periodic_scene() {
     for n in [40, 280] {
         let model = model(&format!(
             "kind noisy: adult {{ noise = 0.1 m/s }}\n\
-             agents p[{n}]: noisy {{ at = uniform in rect (2, 0) .. (12, 3)  direction = normal(0 deg, 9 deg)  radius = 0.1 m }}\n"
+             agents p[{n}]: noisy {{ at = uniform in rect (2, 0) .. (12, 3); direction = normal(0 deg, 9 deg); radius = 0.1 m }}\n"
         ));
         let report = |threads| {
             let options = Options::default().seed(3).threads(threads).max_trials(24);

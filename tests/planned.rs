@@ -78,7 +78,7 @@ fn first_plan(
 
 #[test]
 fn who_is_alone_walks_the_plan_within_its_limits() {
-    let model = field("agent me: planner { at = uniform in start  route = goal }");
+    let model = field("agent me: planner { at = uniform in start; route = goal }");
     for trial in 0..8 {
         let (outline, speeds) = first_plan(model.scenario(), trial, 0, None).unwrap();
         let course = outline.course.unwrap();
@@ -108,7 +108,7 @@ fn who_is_alone_walks_the_plan_within_its_limits() {
 
 #[test]
 fn a_goal_is_a_free_point_drawn_in_its_region() {
-    let model = field("agent me: planner { at = (1, 5)  route = goal }");
+    let model = field("agent me: planner { at = (1, 5); route = goal }");
     let ends: Vec<Vec2> = (0..20)
         .map(|trial| {
             let (outline, speeds) = first_plan(model.scenario(), trial, 0, None).unwrap();
@@ -125,7 +125,7 @@ fn a_goal_is_a_free_point_drawn_in_its_region() {
 
 #[test]
 fn one_plan_leads_through_goals_and_rests_at_a_pause() {
-    let through = field("agent me: planner { at = (1, 5)  route = half -> goal }");
+    let through = field("agent me: planner { at = (1, 5); route = half -> goal }");
     let (outline, _) = first_plan(through.scenario(), 0, 0, None).unwrap();
     let course = outline.course.unwrap();
     // It passes the first goal without a stop, and the second one begins when the first has been reached.
@@ -133,7 +133,7 @@ fn one_plan_leads_through_goals_and_rests_at_a_pause() {
     let walked = track(&through, 0, "me");
     assert!(walked.iter().any(|(p, _)| p.x > 20.0 && p.x < 23.0 && p.y > 14.0 && p.y < 17.0));
     assert!(walked.last().unwrap().0.x > 38.0);
-    let pausing = field("agent me: planner { at = (1, 5)  route = half -> wait 6 s -> goal }");
+    let pausing = field("agent me: planner { at = (1, 5); route = half -> wait 6 s -> goal }");
     let walked = track(&pausing, 0, "me");
     let rests = walked.iter().filter(|(p, v)| v.norm() < 0.01 && p.x > 20.0 && p.x < 23.0).count();
     // At rest for most of the 6 s: the time counts from where the region is entered.
@@ -143,7 +143,7 @@ fn one_plan_leads_through_goals_and_rests_at_a_pause() {
 
 #[test]
 fn a_preferred_speed_follows_the_largest_one() {
-    let model = field("agents me[20]: planner { at = uniform in start  route = goal }");
+    let model = field("agents me[20]: planner { at = uniform in start; route = goal }");
     let program = Program::driven(model.scenario().clone(), Ways::default().drivers(model.scenario(), 1));
     let key = TrialKey { seed: 1, index: 0, branch: 0 };
     let (run, _) = Run::of(&program, key.into()).unwrap_or_else(|_| panic!("no start"));
@@ -157,11 +157,11 @@ fn a_preferred_speed_follows_the_largest_one() {
 
 #[test]
 fn a_behaviour_changes_the_pace_of_the_plan() {
-    let slow = "behaviour tired { state fresh { after 4 s -> tired }  state tired { speed = 0.5 * speed } }";
-    let calm = "profile = optimal  speed = 1.2 m/s";
-    let kind = KIND.replace("roadmap", &format!("{calm}  roadmap"));
+    let slow = "behaviour tired { state fresh { after 4 s -> tired }; state tired { speed = 0.5 * speed } }";
+    let calm = "profile = optimal; speed = 1.2 m/s";
+    let kind = KIND.replace("roadmap", &format!("{calm}; roadmap"));
     let arrival = |behaviour: &str, with: &str| {
-        let rest = format!("{behaviour}\nagent me: planner {with} {{ at = (1, 5)  route = goal }}");
+        let rest = format!("{behaviour}\nagent me: planner {with} {{ at = (1, 5); route = goal }}");
         let track = track(&model(&format!("{FIELD}{kind}{rest}")), 0, "me");
         track.iter().position(|(p, _)| p.x > 30.0).unwrap() as f64 * 0.04
     };
@@ -174,8 +174,8 @@ fn a_behaviour_changes_the_pace_of_the_plan() {
 fn who_is_pushed_off_the_plan_makes_another_one() {
     // A heading for 5 s leads away from the plan.
     let model = field(
-        "agent me: planner { at = (1, 5)  route = goal }
-         moves me for 5 s { heading 90 deg  heading 0 deg }",
+        "agent me: planner { at = (1, 5); route = goal }
+         moves me for 5 s { heading 90 deg; heading 0 deg }",
     );
     let report = model
         .check("rank moves of me by P(F<=60 s (me in goal)) within 0.2", &Options::default().max_trials(200))
@@ -186,11 +186,11 @@ fn who_is_pushed_off_the_plan_makes_another_one() {
 
 #[test]
 fn others_change_neither_the_roadmap_nor_the_draws_of_anybody() {
-    let alone = field("agent me: planner { at = (1, 1)  route = goal }");
+    let alone = field("agent me: planner { at = (1, 1); route = goal }");
     let far = "kind other: planned { limit speed = 1 m/s }
-        agents others[3]: other { at = near me within 9 m  route = half }";
+        agents others[3]: other { at = near me within 9 m; route = half }";
     let among = field(&format!(
-        "agent me: planner {{ at = (1, 1)  route = goal }}\n{far}\npaths me {{ roadmap alternatives 3 }}"
+        "agent me: planner {{ at = (1, 1); route = goal }}\n{far}\npaths me {{ roadmap alternatives 3 }}"
     ));
     let plan = |model: &Model| first_plan(model.scenario(), 5, 0, None).unwrap().0;
     let (a, b) = (plan(&alone), plan(&among));
@@ -210,8 +210,8 @@ scene {
   obstacle upper: rect (10, 11) .. (20, 18)
   wall (-1, -1) -- (31, -1) -- (31, 21) -- (-1, 21) -- (-1, -1)
 }
-kind planner: planned { limit speed = 1.5 m/s  roadmap = prm(samples = 300) }
-agents people[2]: planner { at = uniform in start  route = goal }
+kind planner: planned { limit speed = 1.5 m/s; roadmap = prm(samples = 300) }
+agents people[2]: planner { at = uniform in start; route = goal }
 paths people[1] { roadmap alternatives 9 }
 ";
 
@@ -255,7 +255,7 @@ fn paths_of_different_classes_are_ranked_and_the_shortest_wins_a_tie() {
 #[test]
 fn who_is_too_wide_has_no_way_and_a_closed_goal_is_an_error() {
     // Bodies wider than 99.9 % of the law have no roadmap: here, than 0.69 m.
-    let wide = BLOCKS.replace("{ limit speed", "{ radius = exponential(0.1 m)  limit speed");
+    let wide = BLOCKS.replace("{ limit speed", "{ radius = exponential(0.1 m); limit speed");
     let model_of_wide = model(&wide);
     let scenario = model_of_wide.scenario();
     let Route::Legs { legs, .. } = &scenario.agents[0].route else { panic!("legs") };
@@ -283,7 +283,7 @@ fn who_is_too_wide_has_no_way_and_a_closed_goal_is_an_error() {
 
 #[test]
 fn a_roadmap_without_vertices_is_a_warning() {
-    let text = format!("{FIELD}{KIND}agent me: planner {{ at = (1, 5)  route = goal }}");
+    let text = format!("{FIELD}{KIND}agent me: planner {{ at = (1, 5); route = goal }}");
     let sparse = text.replace("separation = 1 m", "separation = 500 m");
     let options = Options::default().max_trials(10);
     let report = model(&sparse).check("estimate P(F<=60 s (me in goal))", &options);
@@ -303,7 +303,7 @@ scene {
   region goal: rect (18, 0) .. (20, 2)
 }
 kind walker: planned { limit speed = 1.5 m/s }
-agent ann: walker { at = uniform in start  route = goal }
+agent ann: walker { at = uniform in start; route = goal }
 ";
 
 #[test]
@@ -328,7 +328,7 @@ fn a_roadmap_that_leads_nowhere_is_an_error_with_its_box_and_a_point_widens_it()
 
 #[test]
 fn a_ranking_of_paths_needs_a_goal() {
-    let aimless = AT_THE_RIM.replace("  route = goal }", " }\npaths ann { roadmap alternatives 2 }");
+    let aimless = AT_THE_RIM.replace("; route = goal }", " }\npaths ann { roadmap alternatives 2 }");
     let error = model(&aimless)
         .check("rank paths of ann by P(F<=9 s (ann in goal)) within 0.1", &Options::default())
         .unwrap_err()
@@ -381,36 +381,36 @@ fn shortened_paths_are_hardly_longer_than_the_shortest_ways() {
 fn wrong_kinds_and_paths_are_refused_with_a_place_and_a_hint() {
     let start = "horizon = 9 s\nstep = 0.04 s\nscene { region goal: rect (8, 0) .. (9, 1) }\n";
     let cases = [
-        ("kind k: planned { }  agent a: k { at = (0, 0) }", "`k` has no limit speed"),
+        ("kind k: planned { }; agent a: k { at = (0, 0) }", "`k` has no limit speed"),
         (
-            "kind k: planned { limit speed = 0 m/s }  agent a: k { at = (0, 0) }",
+            "kind k: planned { limit speed = 0 m/s }; agent a: k { at = (0, 0) }",
             "`limit speed` must be positive",
         ),
-        ("kind k: planned { limit speed = 1 m/s  limit acceleration = -1 m/s^2 }", "must be positive"),
-        ("kind k: planned { limit speed = 1 m/s  pieces = 1 }", "a whole number from 2 to 64"),
-        ("kind k: planned { limit speed = 1 m/s  pieces = uniform(2, 5) }", "a whole number from 2 to 64"),
-        ("kind k: planned { limit speed = 1 m/s  roadmap = prm(sample = 5) }", "unknown argument of `prm`"),
-        ("kind k: planned { limit speed = 1 m/s  roadmap = prm(samples = 1) }", "from 2 to 100000"),
-        ("kind k: planned { limit speed = 1 m/s  roadmap = rrt(samples = 9) }", "`rrt` has no root"),
-        ("kind k: planned { limit speed = 1 m/s  roadmap = grid(samples = 9) }", "unknown roadmap `grid`"),
-        ("kind k: planned { limit speed = 1 m/s  profile = fast }", "`varied`, `optimal` or `uniform`"),
-        ("kind k: planned { limit speed = 1 m/s  wayfinding = straight }", "unknown parameter `wayfinding`"),
+        ("kind k: planned { limit speed = 1 m/s; limit acceleration = -1 m/s^2 }", "must be positive"),
+        ("kind k: planned { limit speed = 1 m/s; pieces = 1 }", "a whole number from 2 to 64"),
+        ("kind k: planned { limit speed = 1 m/s; pieces = uniform(2, 5) }", "a whole number from 2 to 64"),
+        ("kind k: planned { limit speed = 1 m/s; roadmap = prm(sample = 5) }", "unknown argument of `prm`"),
+        ("kind k: planned { limit speed = 1 m/s; roadmap = prm(samples = 1) }", "from 2 to 100000"),
+        ("kind k: planned { limit speed = 1 m/s; roadmap = rrt(samples = 9) }", "`rrt` has no root"),
+        ("kind k: planned { limit speed = 1 m/s; roadmap = grid(samples = 9) }", "unknown roadmap `grid`"),
+        ("kind k: planned { limit speed = 1 m/s; profile = fast }", "`varied`, `optimal` or `uniform`"),
+        ("kind k: planned { limit speed = 1 m/s; wayfinding = straight }", "unknown parameter `wayfinding`"),
         ("kind k: sfm preset helbing2000 { profile = optimal }", "unknown parameter `profile`"),
-        ("kind k: planned { limit speed = 1 m/s  avoid = sfm preset helbing }", "unknown preset `helbing`"),
+        ("kind k: planned { limit speed = 1 m/s; avoid = sfm preset helbing }", "unknown preset `helbing`"),
         (
-            "kind k: planned { limit speed = 1 m/s }  group g[2]: k as particle { at = (0, 0) }",
+            "kind k: planned { limit speed = 1 m/s }; group g[2]: k as particle { at = (0, 0) }",
             "cannot move `as particle`",
         ),
         (
-            "kind k: sfm preset helbing2000  agent a: k { at = (0, 0) }  paths a { roadmap alternatives 3 }",
+            "kind k: sfm preset helbing2000; agent a: k { at = (0, 0) }; paths a { roadmap alternatives 3 }",
             "does not plan",
         ),
         (
-            "kind k: planned { limit speed = 1 m/s }  agents a[2]: k { at = uniform in goal }  paths a { roadmap alternatives 3 }",
+            "kind k: planned { limit speed = 1 m/s }; agents a[2]: k { at = uniform in goal }; paths a { roadmap alternatives 3 }",
             "paths must belong to one agent",
         ),
         (
-            "kind k: planned { limit speed = 1 m/s }  agent a: k { at = (0, 0) }  paths a { roadmap alternatives 0 }",
+            "kind k: planned { limit speed = 1 m/s }; agent a: k { at = (0, 0) }; paths a { roadmap alternatives 0 }",
             "a whole number from 1 to 64",
         ),
     ];
@@ -434,7 +434,7 @@ fn wrong_kinds_and_paths_are_refused_with_a_place_and_a_hint() {
 
 #[test]
 fn a_goal_may_be_a_point() {
-    let model = field("agent me: planner { at = (1, 5)  route = (30, 12) }");
+    let model = field("agent me: planner { at = (1, 5); route = (30, 12) }");
     let last = track(&model, 0, "me").last().unwrap().0;
     assert!((last - Vec2::new(30.0, 12.0)).norm() < 0.15, "{last:?}");
     let Route::Legs { legs, .. } = &model.scenario().agents[0].route else { panic!("legs") };

@@ -7,7 +7,7 @@ use smc::model::{Obstacle, Scene};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-const FRAME: &str = "horizon = 1 s  step = 0.02 s
+const FRAME: &str = "horizon = 1 s; step = 0.02 s
 kind adult: sfm preset helbing2000
 agent me: adult { at = (2, 1.5) }
 ";
@@ -199,7 +199,7 @@ fn doors_of_one_file_open_the_outlines_of_another() {
     let doors =
         imdf(&[(r#""feature_type":"opening""#, "LineString", "[[11.5001,48.00004],[11.5001,48.00006]]")]);
     let files = [("unit.geojson", units.as_str()), ("opening.geojson", doors.as_str())];
-    let imports = "import \"unit.geojson\" where feature_type != \"venue\" { projection = local } import \"opening.geojson\" { projection = local }";
+    let imports = "import \"unit.geojson\" where feature_type != \"venue\" { projection = local }; import \"opening.geojson\" { projection = local }";
     let scene = scene(imports, &files);
     assert_eq!(scene.barriers.len(), 3);
     let found = centimetres(&scene);
@@ -231,7 +231,7 @@ fn a_drawing_of_lines_is_joined_and_has_its_unit_and_origin() {
                     0 LINE 8 A-WALL 10 691605000 20 30 11 691605000 21 4000 \
                     0 CIRCLE 8 A-COLS 10 691603000 20 2500 40 200";
     let drawing = dxf("4", entities);
-    let import = "import \"a.dxf\" { snap = 5 cm  origin = (691600, 0) }";
+    let import = "import \"a.dxf\" { snap = 5 cm; origin = (691600, 0) }";
     let scene = scene(import, &[("a.dxf", &drawing)]);
     assert_eq!(centimetres(&scene), [[0, 0, 500, 0], [500, 0, 500, 400]]);
     let Obstacle::Solid(column) = &scene.barriers[2].obstacle else { panic!("{scene:?}") };
@@ -470,7 +470,7 @@ fn what_is_wrong_with_a_drawing_is_said() {
         r#"import "room.wkt" as walkable { origin = (5, 2) s }"#,
         r#"import "room.wkt" as walkable { orign = (5, 2) }"#,
         r#"import "room.wkt" as walkable { projection = mercator }"#,
-        r#"import "room.wkt" as walkable { projection = local  unit = 1 m }"#,
+        r#"import "room.wkt" as walkable { projection = local; unit = 1 m }"#,
         r#"import "room.wkt" as walkable { projection = local }"#,
         r#"import "room.wkt" as walkabel"#,
         r#"import "map.wkt" { snap = 5 cm }"#,
@@ -493,8 +493,8 @@ fn what_is_wrong_with_a_drawing_is_said() {
         r#"import "arc.dxf""#,
         r#"import "gap.wkt" { snap = 1 m }"#,
         r#"import "gap.wkt" { snap = 40 cm }"#,
-        r#"import "swapped.wkt" { projection = local  origin = (11.5678, 48.1491) }"#,
-        r#"import "swapped.wkt" { projection = local  origin = (11.6, 48.2) }"#,
+        r#"import "swapped.wkt" { projection = local; origin = (11.5678, 48.1491) }"#,
+        r#"import "swapped.wkt" { projection = local; origin = (11.6, 48.2) }"#,
         r#"import "east.wkt" { projection = local }"#,
         r#"import "plan.dwg""#,
         r#"import "plan.ifc""#,
@@ -518,7 +518,7 @@ fn a_filter_and_a_unit_that_fit_say_nothing() {
     let plan = dxf("0", "0 LINE 8 A-WALL 10 0 20 0 11 5000 21 0 0 TEXT 8 A-TEXT 10 0 20 0 1 hall");
     let place = Place::new(&[("plan.dxf", &plan)]);
     let text = format!(
-        "{FRAME}scene {{ import \"plan.dxf\" where layer == \"A-WALL\" {{ unit = 1 mm  snap = 5 cm }} }}\n"
+        "{FRAME}scene {{ import \"plan.dxf\" where layer == \"A-WALL\" {{ unit = 1 mm; snap = 5 cm }} }}\n"
     );
     place.write("a.scn", text.as_bytes());
     let said = place.call(&["show", "a.scn"]);
@@ -529,9 +529,9 @@ fn a_filter_and_a_unit_that_fit_say_nothing() {
 #[test]
 fn a_drawing_that_encloses_a_start_is_named() {
     let cell = dxf("6", "0 LWPOLYLINE 8 A 70 1 10 0 20 0 10 4 20 0 10 4 20 3 10 0 20 3");
-    let text = "horizon = 9 s  step = 0.02 s
+    let text = "horizon = 9 s; step = 0.02 s
 kind adult: sfm preset helbing2000
-agent me: adult { at = (2, 1.5)  route = (9, 1.5) }
+agent me: adult { at = (2, 1.5); route = (9, 1.5) }
 scene { import \"cell.dxf\" }
 ";
     let model = Draft::new("a.scn", text).file("cell.dxf", cell).parse().unwrap_or_else(|e| panic!("{e}"));

@@ -87,7 +87,7 @@ fn too_many_combinations_of_sweeps_are_refused_before_they_are_made() {
 #[test]
 fn sweeps_in_units_that_are_no_decimals_stay_in_their_range() {
     let scenario = "scenario \"turns\"\nhorizon = 1 steps\nconst most = 90 deg\nparam a = 45 deg in 0 deg .. most\n\
-        process c { var x: 0 .. 2 = 0  when x == 0 & a >= 0 deg -> x = 1 }\n";
+        process c { var x: 0 .. 2 = 0; when x == 0 & a >= 0 deg -> x = 1 }\n";
     let points = |sweep: &str| -> Vec<String> {
         let found = results(scenario, "estimate P(F (c.x == 1)) by fixed(trials = 1)\n", &["--set", sweep]);
         found.iter().map(|r| written(&r["settings"]["a"])).collect()

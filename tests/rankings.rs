@@ -137,9 +137,9 @@ fn ties_of_values_and_routes_go_by_order_of_writing() {
         let text = "rank moves of robot by P(F<=1 s (x(robot) < 12 m)) within 0.3\n";
         results(&format!("{far} {{ {moves} }}\n"), text, &[])[0]["choice"].as_str().unwrap().to_owned()
     };
-    assert_eq!(ties("heading 40 deg  route b = goal  route a = goal  heading 10 deg"), "heading 40 deg");
-    assert_eq!(ties("route b = goal  route a = goal"), "route b");
-    assert_eq!(ties("heading 40 deg  heading 10 deg"), "heading 10 deg");
+    assert_eq!(ties("heading 40 deg; route b = goal; route a = goal; heading 10 deg"), "heading 40 deg");
+    assert_eq!(ties("route b = goal; route a = goal"), "route b");
+    assert_eq!(ties("heading 40 deg; heading 10 deg"), "heading 10 deg");
 }
 
 /// A named route replaces the own one: the trial is that of an agent which was declared with it.
@@ -195,9 +195,9 @@ fn pauses_of_a_named_route_have_addresses_of_their_own() {
         (line("route a"), line("route b"))
     };
     let law = "wait uniform(0 s, 3 s) -> goal";
-    let (a, b) = with(&format!("route a = {law}  route b = {law}"));
+    let (a, b) = with(&format!("route a = {law}; route b = {law}"));
     assert_ne!(a, b);
-    assert_eq!(with(&format!("stop  route c = {law}  route b = {law}  route a = {law}")), (a, b));
+    assert_eq!(with(&format!("stop; route c = {law}; route b = {law}; route a = {law}")), (a, b));
 }
 
 /// The lines of a report show the trials of its options.

@@ -115,7 +115,7 @@ fn a_party_is_where_the_mean_of_its_members_is() {
         kind adult: sfm preset helbing2000 { noise = 0.05 m/s }\n\
         group party: adult as particle from here at 4 s group of 1\n\
         groups crowd: adult as particle from here at 4 s except group of 1\n\
-        moves party for 1 s { heading 0 deg  stop }\n";
+        moves party for 1 s { heading 0 deg; stop }\n";
     // From 3.9 s on both go beside each other, with 1 m between them.
     let tracks: String = (0..20)
         .flat_map(|k| {
@@ -184,14 +184,14 @@ fn passing() -> String {
 
 #[test]
 fn kinds_without_forces_have_the_body_of_the_user() {
-    let free = "A = 0 N  k1 = 0 kg/s^2  k2 = 0 kg/(m s)";
+    let free = "A = 0 N; k1 = 0 kg/s^2; k2 = 0 kg/(m s)";
     let kinds = [
-        format!("kind adult: sfm preset smc1 {{ radius = 0.2 m  headway = 0 s  {free} }}"),
-        "kind base: sfm preset smc1 { radius = 0.2 m }\nkind adult: base { A2 = 300 N  B2 = 1 m }".to_owned(),
-        "kind base: sfm preset helbing2000\nkind adult: base { radius = wide / 2  noise = 0.1 m/s }"
+        format!("kind adult: sfm preset smc1 {{ radius = 0.2 m; headway = 0 s; {free} }}"),
+        "kind base: sfm preset smc1 { radius = 0.2 m }\nkind adult: base { A2 = 300 N; B2 = 1 m }".to_owned(),
+        "kind base: sfm preset helbing2000\nkind adult: base { radius = wide / 2; noise = 0.1 m/s }"
             .to_owned(),
         "kind wide_one: sfm { radius = 0.4 m }\nkind adult: wide_one preset smc1".to_owned(),
-        "kind adult: planned { radius = 0.2 m  limit speed = 1.5 m/s }".to_owned(),
+        "kind adult: planned { radius = 0.2 m; limit speed = 1.5 m/s }".to_owned(),
     ];
     let asked = "property apart = G<=2 s (clearance(user) > 0 m)\n";
     let tracks = passing();

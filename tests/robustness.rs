@@ -170,7 +170,7 @@ fn outside_of_its_range_a_margin_is_shown_as_it_is() {
 fn beyond_the_end_of_a_trial_no_margin_is_told() {
     let model = "scenario \"a\"\nhorizon = 5 s\nstep = 0.1 s\n\
 scene { region exit: rect (2, 0) .. (3, 4) }\nkind adult: sfm preset helbing2000\n\
-agents c[1]: adult { at = (0, 2)  route = exit then leave }\n";
+agents c[1]: adult { at = (0, 2); route = exit then leave }\n";
     let query = |range: &str| {
         format!("check E(robustness(G<=4.9 s (mean(travelled(a) for a in c) < 1 m))) in {range} >= 0.9 m\n")
     };
@@ -206,7 +206,7 @@ fn each_level_of_a_quantile_is_certified_by_its_own_name() {
 #[test]
 fn points_of_all_have_the_depth_in_a_region_as_their_margin() {
     let scenario = "scenario \"a\"\nhorizon = 1 s\nstep = 0.1 s\n\
-        scene { region big: rect (-10, -10) .. (30, 30)  region far: rect (20, 0) .. (30, 10) }\n\
+        scene { region big: rect (-10, -10) .. (30, 30); region far: rect (20, 0) .. (30, 10) }\n\
         kind adult: sfm preset helbing2000\nagent one: adult { at = (1, 1) }\nagent two: adult { at = (5, 5) }\n";
     let asked = [
         ("forall a in everyone: (position(a) + (1, 0)) in big", 11.0),

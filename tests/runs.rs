@@ -41,7 +41,7 @@ fn a_trial_ends_for_one_reason() {
     assert_eq!(end(jumps, 0), (4, End::Faulty(Fault::Range { variable: 0, value: 5.0 })));
     assert_eq!(end(&jumps.replace("when true", "when n < 4"), 0), (4, End::Horizon));
     let door = "scenario \"t\"\nhorizon = 9 s\nstep = 0.05 s\nkind person: sfm preset helbing2000 { noise = 0 m/s }\n\
-                source door: person { at = (0, 0) velocity = (1, 0) m/s every = 2 s limit = 2 route = (50, 0) }\n";
+                source door: person { at = (0, 0); velocity = (1, 0) m/s; every = 2 s; limit = 2; route = (50, 0) }\n";
     assert!(matches!(end(door, 0), (60..=160, End::Full)), "{:?}", end(door, 0));
     let busy = "scenario \"t\"\nhorizon = 9 s\nstep = 1 s\nprocess p { var on = false\n when true at 100000000 /s -> on = !on }\n";
     assert_eq!(end(busy, 0), (1, End::Diverged));

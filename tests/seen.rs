@@ -14,7 +14,7 @@ const TABLE: &str = "time,id,x,y,vx,vy\n\
 fn text(tracks: &str, people: &str) -> String {
     format!(
         "horizon = 2 s\nstep = 0.1 s\ntracks here = csv \"here.csv\" {tracks}\n\
-         kind adult: sfm preset helbing2000 {{ radius = 0.25 m  noise = 0 m/s }}\n{people}\n"
+         kind adult: sfm preset helbing2000 {{ radius = 0.25 m; noise = 0 m/s }}\n{people}\n"
     )
 }
 
@@ -118,7 +118,7 @@ fn velocities_are_recorded_or_seen_and_remembered() {
     // From 0.5 m to 1.2 m in 0.5 s.
     assert!(near(speed("{ velocity = seen }"), (1.4, 1.4)), "{:?}", speed("{ velocity = seen }"));
     // The mean of the last second.
-    assert!(near(speed("{ velocity = seen  memory = 1 s }"), (1.4, 1.2)));
+    assert!(near(speed("{ velocity = seen; memory = 1 s }"), (1.4, 1.2)));
     // The track is not older than a second.
     assert!(near(speed("{ memory = 9 s }"), (1.4, 1.2)));
     let first = scenario("{ velocity = seen }", "agent user: adult from here at 0 s id 1");
@@ -136,7 +136,7 @@ fn whoever_goes_on_keeps_the_remembered_velocity() {
 
 #[test]
 fn moves_may_belong_to_one_body() {
-    let moves = "moves party for 1 s { heading -30 deg  heading 30 deg  stop }";
+    let moves = "moves party for 1 s { heading -30 deg; heading 30 deg; stop }";
     let party = format!("group party: adult as particle from here at 1 s group of 1\n{moves}");
     assert_eq!(scenario("", &party).moves[0].options.len(), 3);
     let many = format!("groups party: adult as particle from here at 1 s\n{moves}");
@@ -151,7 +151,7 @@ fn what_cannot_be_meant_is_refused() {
         ("{ memory = -1 s }", user, "`memory` cannot be negative"),
         ("{ memory = 1 m }", user, "error"),
         ("{ memry = 1 s }", user, "did you mean `memory`"),
-        ("{ memory = 1 s  memory = 2 s }", user, "`memory` is set twice"),
+        ("{ memory = 1 s; memory = 2 s }", user, "`memory` is set twice"),
         (
             "",
             "group party[2]: adult as particle from here at 1 s id 1, 2",

@@ -120,7 +120,7 @@ const DOOR: &str = r#"scenario "Door"
 horizon = 6 s
 step = 0.1 s
 kind person: sfm preset helbing2000 { noise = 0.2 m/s }
-source door: person { at = (0, 0)  velocity = (1, 0) m/s  every = uniform(1 s, 2 s)  route = (50, 0) }
+source door: person { at = (0, 0); velocity = (1, 0) m/s; every = uniform(1 s, 2 s); route = (50, 0) }
 "#;
 
 #[test]

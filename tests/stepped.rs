@@ -61,20 +61,20 @@ fn refused(text: &str, said: &str) {
     }
 }
 
-const ALONE: &str = "agent me: operator { at = uniform in start  route = desk }";
+const ALONE: &str = "agent me: operator { at = uniform in start; route = desk }";
 
 #[test]
 fn the_root_goes_along_its_steps_whatever_pushes() {
     // A dense crowd that would push anybody else.
     let crowd = "kind adult: sfm preset helbing2000 { noise = 0.3 m/s }
-        agents crowd[6]: adult { at = uniform in rect (2, 0) .. (8, 6)  route = start }";
+        agents crowd[6]: adult { at = uniform in rect (2, 0) .. (8, 6); route = start }";
     let walks = open(&format!("{ALONE}\n{crowd}"));
     for pair in track(&walks, 0, "me").windows(2) {
         // The velocity leads to the next place, so that others feel how the walker moves.
         assert!((pair[1].0 - pair[0].0 - pair[0].1 / 60.0).norm() < 1e-9, "{pair:?}");
     }
     let stands =
-        open(&format!("agent me: operator {{ at = (0.5, 3)  route = start -> wait 50 s -> desk }}\n{crowd}"));
+        open(&format!("agent me: operator {{ at = (0.5, 3); route = start -> wait 50 s -> desk }}\n{crowd}"));
     let path = track(&stands, 0, "me");
     assert!(path[..60 * 50].iter().all(|(place, velocity)| *place == path[0].0 && velocity.norm() == 0.0));
 }
@@ -104,7 +104,7 @@ fn a_walk_ends_at_a_drawn_point_and_the_leg_with_its_last_step() {
 
 #[test]
 fn numbers_of_legs_are_known_when_the_legs_end() {
-    let model = hall("agent me: operator { at = uniform in start  route = desk -> wait 2 s -> shelf }");
+    let model = hall("agent me: operator { at = uniform in start; route = desk -> wait 2 s -> shelf }");
     let of = |metric: &str, most: &str| {
         value(&model, &format!("estimate E({metric}) in 0 {most} .. 40 {most} by fixed(trials = 40)"))
     };
@@ -138,9 +138,9 @@ fn legs_are_those_of_walkers_of_every_kind() {
     let model = hall(
         "kind adult: sfm preset helbing2000 { }
         kind planner: planned { limit speed = 1.4 m/s }
-        agent a: adult { at = (0, 1)  route = desk -> wait 1 s -> shelf }
-        agent b: planner { at = (0, 5)  route = desk -> wait 1 s }
-        agent c: operator { at = (0, 3)  route = shelf then leave }",
+        agent a: adult { at = (0, 1); route = desk -> wait 1 s -> shelf }
+        agent b: planner { at = (0, 5); route = desk -> wait 1 s }
+        agent c: operator { at = (0, 3); route = shelf then leave }",
     );
     for (query, least, most) in [
         ("leg_length(a, 1)", 7.5, 10.0),
@@ -166,12 +166,12 @@ fn legs_are_those_of_walkers_of_every_kind() {
 fn speed_of_a_behaviour_scales_the_free_speed() {
     let slow = hall(
         "behaviour tired { state slow { speed = 0.5 * speed } }
-        agent me: operator with tired { at = uniform in start  route = desk }
-        agent other: operator { at = (0, 5.5)  route = shelf }",
+        agent me: operator with tired { at = uniform in start; route = desk }
+        agent other: operator { at = (0, 5.5); route = shelf }",
     );
     let plain = hall(
-        "agent me: operator { at = uniform in start  route = desk }
-        agent other: operator { at = (0, 5.5)  route = shelf }",
+        "agent me: operator { at = uniform in start; route = desk }
+        agent other: operator { at = (0, 5.5); route = shelf }",
     );
     let time =
         |model: &Model| value(model, "estimate E(leg_time(me, 1)) in 0 s .. 60 s by fixed(trials = 40)");
@@ -182,8 +182,8 @@ fn speed_of_a_behaviour_scales_the_free_speed() {
 #[test]
 fn advice_holds_from_the_end_of_a_step() {
     let model = hall(
-        "agent me: operator { at = (0, 1)  route = (9, 1) }
-        moves me for 3 s { heading 30 deg  stop  heading -20 deg }",
+        "agent me: operator { at = (0, 1); route = (9, 1) }
+        moves me for 3 s { heading 30 deg; stop; heading -20 deg }",
     );
     let query = "rank moves of me by E(y(position(me)) at 3 s) in -1 m .. 7 m within 0.3 m";
     let report = ask(&model, query);
@@ -198,8 +198,8 @@ fn advice_holds_from_the_end_of_a_step() {
 fn people_in_the_way_are_avoided_and_who_stands_is_walked_around() {
     let model = open(
         "kind adult: sfm preset helbing2000 { }
-        agent post: adult { at = (4.5, 3)  route = (4.5, 3) }
-        agent me: operator { at = (0.5, 3)  route = (9, 3) }",
+        agent post: adult { at = (4.5, 3); route = (4.5, 3) }
+        agent me: operator { at = (0.5, 3); route = (9, 3) }",
     );
     let met = value(&model, "estimate P(F (distance(me, post) < 0.35 m)) by fixed(trials = 40)");
     assert!(met <= 0.05, "{met}");
@@ -213,9 +213,9 @@ fn others_change_no_step_of_somebody_out_of_reach() {
     let more = hall(&format!(
         "{ALONE}
         kind adult: sfm preset helbing2000 {{ }}
-        agent far: adult {{ at = (0, 6.6)  route = (0, 6.6) }}
+        agent far: adult {{ at = (0, 6.6); route = (0, 6.6) }}
         kind second: stepped {{ }}
-        agent late: second {{ at = (10.5, 6.5)  route = (10.5, 6) }}"
+        agent late: second {{ at = (10.5, 6.5); route = (10.5, 6) }}"
     ));
     for trial in 0..5 {
         let (a, b) = (track(&alone, trial, "me"), track(&more, trial, "me"));
@@ -237,7 +237,7 @@ fn without_a_way_there_is_an_error_before_the_first_trial() {
 #[test]
 fn wrong_kinds_and_legs_are_refused_with_a_place_and_a_hint() {
     let start = "horizon = 9 s\nstep = 0.04 s\nscene { region goal: rect (8, 0) .. (9, 1) }\n";
-    let agent = "agent a: k { at = (0, 0)  route = goal }";
+    let agent = "agent a: k { at = (0, 0); route = goal }";
     for (kind, said) in [
         ("kind k: stepped { tau = 1 s }", "unknown parameter `tau`"),
         ("kind k: stepped { attention = 0.5 }", "unknown parameter `attention`"),
@@ -254,11 +254,11 @@ fn wrong_kinds_and_legs_are_refused_with_a_place_and_a_hint() {
         refused(&format!("{start}{kind}\n{agent}"), said);
     }
     refused(
-        &format!("{start}kind k: stepped {{ }}\ngroup g[2]: k {{ at = (0, 0)  route = goal }}"),
+        &format!("{start}kind k: stepped {{ }}\ngroup g[2]: k {{ at = (0, 0); route = goal }}"),
         "cannot be a group",
     );
     refused(
-        &format!("{start}kind k: stepped {{ }}\ngroup g[2]: k as particle {{ at = (0, 0)  route = goal }}"),
+        &format!("{start}kind k: stepped {{ }}\ngroup g[2]: k as particle {{ at = (0, 0); route = goal }}"),
         "cannot move `as particle`",
     );
     let fine = model(&format!("{start}kind k: stepped {{ }}\n{agent}"));

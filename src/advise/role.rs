@@ -27,7 +27,7 @@ pub fn role(file: &ScenarioFile) -> Result<Role, Diagnostic> {
     let Some(moves) = moves else {
         let error = Diagnostic::placeless(Code::E0406, "the scenario has no moves to advise");
         return Err(
-            error.hint("write `moves user for 1.6 s { heading from -60 deg to 60 deg by 15 deg  stop }`")
+            error.hint("write `moves user for 1.6 s { heading from -60 deg to 60 deg by 15 deg; stop }`")
         );
     };
     let declared = file.items.iter().find_map(|item| match item {

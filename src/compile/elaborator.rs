@@ -211,10 +211,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) doubtful: BTreeSet<(ScopeId, String)>,
     /// The expressions that failed, in order.
     pub(super) journal: Vec<(Vain, (ScopeId, String))>,
-    /// Parts of the files that were not read to their end, ascending, none within another: what is wrong with them was said.
-    pub(super) cut: Vec<Span>,
-    /// Parts of the files that were not read at all, or not to their end.
+    /// Parts of the files that could not be read.
     pub(super) torn: Vec<Span>,
+    /// Where values that could not be read stand: nothing more is said of them.
+    pub(super) unread: BTreeSet<(SourceId, u32)>,
     /// How much of the clock is known: errors about times that need more are not reported.
     pub(super) told: Told,
     /// Nodes lowered so far.
@@ -289,8 +289,8 @@ impl<'a> Elaborator<'a> {
             broken: BTreeSet::new(),
             doubtful: BTreeSet::new(),
             journal: Vec::new(),
-            cut: Vec::new(),
             torn: Vec::new(),
+            unread: BTreeSet::new(),
             told: Told::Whole,
             nodes: 0,
         }
@@ -307,7 +307,8 @@ impl<'a> Elaborator<'a> {
         if self.told < Told::needed(diagnostic.code) {
             return;
         }
-        if diagnostic.place.as_ref().is_some_and(|place| self.is_cut(place.span)) {
+        let place = diagnostic.place.as_ref().map(|place| (place.span.source, place.span.start));
+        if place.is_some_and(|place| self.unread.contains(&place)) {
             return;
         }
         if [Code::E0302, Code::E0303].contains(&diagnostic.code)
@@ -324,15 +325,6 @@ impl<'a> Elaborator<'a> {
         if self.noted.insert((diagnostic.code, place)) || !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
-    }
-
-    /// Whether a place lies in a part that was not read to its end.
-    pub(super) fn is_cut(&self, place: Span) -> bool {
-        let holds =
-            |cut: &Span| cut.source == place.source && cut.start <= place.start && place.end <= cut.end;
-        // None holds another, so that the last that starts before ends last.
-        let before = self.cut.partition_point(|cut| (cut.source, cut.start) <= (place.source, place.start));
-        self.cut[..before].last().is_some_and(holds)
     }
 
     /// Whether an error of some code was found at a place: said once, it need not be looked for again.

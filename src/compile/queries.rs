@@ -443,7 +443,7 @@ impl<'a> Compiler<'a> {
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
         let mut diagnostics = self.findings();
         // No query is dropped without a diagnostic; the parser reported the parts that it skipped.
-        let is_torn = self.sites.iter().any(|site| !site.elaborator.torn.is_empty());
+        let is_torn = self.input.scenario.fails || self.input.properties.iter().any(|file| file.fails);
         if let Some(query) = self.refused.first().filter(|_| !is_torn)
             && !diagnostics.iter().any(|d| d.severity == Severity::Error)
         {
@@ -454,8 +454,8 @@ impl<'a> Compiler<'a> {
         let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
         let is_lost =
             |one: &Elaborator<'_>| (one.given_up || !one.undeclared.is_empty()) && !fails(&one.diagnostics);
-        let cut = self.sites.iter().any(|site| !site.elaborator.cut.is_empty() || is_lost(&site.elaborator));
-        if cut || diagnostics.iter().any(|d| d.severity == Severity::Error) {
+        let is_cut = self.sites.iter().any(|site| is_lost(&site.elaborator));
+        if is_cut || diagnostics.iter().any(|d| d.severity == Severity::Error) {
             return (None, diagnostics);
         }
         let named = |at: usize| {

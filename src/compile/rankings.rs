@@ -309,7 +309,7 @@ impl Elaborator<'_> {
             format!("write `paths {name} {{ roadmap alternatives 4 }}`")
         } else {
             format!(
-                "write for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
+                "write for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg; stop }}`"
             )
         };
         let what = if paths { "paths" } else { "moves" };

@@ -84,9 +84,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(Code::E0703, recorded.span, said);
             return self.report(error.hint("choose one with `id`, or declare `agents`"));
         }
-        // Of a declaration that was not read to its end nobody knows whom it chooses.
-        let chosen = if self.is_cut(recorded.span) { &[] } else { people.as_slice() };
-        for person in chosen {
+        for person in &people {
             match self.recorded.entry((index, person.id)) {
                 Entry::Vacant(free) => {
                     free.insert(recorded.span);

@@ -6,10 +6,9 @@ use super::places;
 use super::queries::Compiler;
 use super::study::Ask;
 use crate::model::{AgentId, Behaviours, Processes, Scenario, Source};
-use crate::syntax::ast::{PropertyFile, PropertyItem, Query, QueryKind, Ranked};
+use crate::syntax::ast::{Query, QueryKind, Ranked};
 use crate::syntax::codes::Code;
-use crate::syntax::parse::{continues_name, starts_name};
-use crate::syntax::source::{SourceId, Span};
+use crate::syntax::source::Span;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -61,16 +60,13 @@ impl Compiler<'_> {
     /// The starts of the worlds that are surely asked about.
     pub(super) fn starts(&self) -> Vec<Starts> {
         let mut worlds: BTreeSet<usize> = BTreeSet::new();
-        let parts = Parts::of(self.input.properties);
-        let is_cut = |span: Span| self.sites.iter().any(|site| site.elaborator.is_cut(span));
-        let is_whole = |span: Span| !is_cut(span) && !parts.goes_on(span);
         for query in &self.queries {
-            if matches!(query.ask, Ask::Compare { .. } | Ask::Rank { .. }) && is_whole(query.span) {
+            if matches!(query.ask, Ask::Compare { .. } | Ask::Rank { .. }) {
                 worlds.extend(query.ask.worlds());
             }
         }
-        worlds.extend(self.asked.iter().filter(|(span, _)| is_whole(*span)).map(|(_, world)| *world));
-        if self.asks_though_lost(&parts) {
+        worlds.extend(self.asked.iter().map(|(_, world)| *world));
+        if self.asks_though_lost() {
             worlds.extend(&self.bases);
         }
         let starts = |world: &usize| {
@@ -87,23 +83,11 @@ impl Compiler<'_> {
     }
 
     /// Whether a query that could not be read surely sets no values of its own.
-    fn asks_though_lost(&self, parts: &Parts) -> bool {
-        let text = |span: &Span| {
-            let source = self.input.sources.iter().find(|source| source.id == span.source)?;
-            source.text.get(span.start as usize..span.end as usize)
-        };
-        self.input.properties.iter().flat_map(|file| &file.lost).any(|lost| {
-            text(lost).is_some_and(|text| {
-                let mut words =
-                    text.split(|c: char| !continues_name(c)).filter(|word| word.starts_with(starts_name));
-                let asks =
-                    words.next().is_some_and(|first| ASKING.contains(&first) && text.starts_with(first));
-                let of_one_world = !text.starts_with("rank") || text.contains("moves");
-                asks && of_one_world
-                    && words.all(|word| word != "under")
-                    && !sets(text)
-                    && !parts.goes_on(*lost)
-            })
+    fn asks_though_lost(&self) -> bool {
+        self.input.properties.iter().flat_map(|file| &file.broken).any(|item| {
+            let has = |word: &str| item.words.iter().any(|own| own == word);
+            let asks = item.words.first().is_some_and(|first| ASKING.contains(&first.as_str()));
+            asks && (!has("rank") || has("moves")) && !has("under")
         })
     }
 
@@ -115,51 +99,4 @@ impl Compiler<'_> {
             self.asked.push((query.span, world));
         }
     }
-}
-
-/// Where the items of property files start, and what could not be read; both in order.
-struct Parts {
-    items: Vec<(SourceId, u32)>,
-    lost: Vec<(SourceId, u32)>,
-}
-
-impl Parts {
-    fn of(files: &[PropertyFile]) -> Self {
-        let start = |span: Span| (span.source, span.start);
-        let mut items: Vec<_> =
-            files.iter().flat_map(|file| &file.items).map(|item| start(place(item))).collect();
-        let mut lost: Vec<_> = files.iter().flat_map(|file| &file.lost).map(|lost| start(*lost)).collect();
-        items.sort_unstable();
-        lost.sort_unstable();
-        Self { items, lost }
-    }
-
-    /// Whether something that could not be read follows a part before the next item: it may be a piece of it.
-    fn goes_on(&self, part: Span) -> bool {
-        let end = (part.source, part.end);
-        let first = |all: &[(SourceId, u32)]| {
-            all.get(all.partition_point(|at| *at < end)).copied().filter(|(source, _)| *source == part.source)
-        };
-        first(&self.lost).is_some_and(|lost| first(&self.items).is_none_or(|item| lost < item))
-    }
-}
-
-/// Where an item stands, or its name.
-fn place(item: &PropertyItem) -> Span {
-    match item {
-        PropertyItem::Let(decl) => decl.name.span,
-        PropertyItem::Const { name, .. } | PropertyItem::Property { name, .. } => name.span,
-        PropertyItem::Family { span, .. } => *span,
-        PropertyItem::Query(query) => query.span,
-    }
-}
-
-/// Whether a text has a sign by which a value is set.
-fn sets(text: &str) -> bool {
-    let bytes = text.as_bytes();
-    (0..bytes.len()).filter(|&at| bytes[at] == b'=').any(|at| {
-        let before = at.checked_sub(1).map(|before| bytes[before]);
-        let compares = matches!(before, Some(b'<' | b'>' | b'=' | b'!'));
-        !compares && !matches!(bytes.get(at + 1), Some(b'=' | b'>'))
-    })
 }

@@ -36,7 +36,9 @@ impl<'a> Elaborator<'a> {
         this.measured = measured.to_vec();
         this.declare(scenario);
         this.declare_properties(properties);
-        this.set_aside(scenario, properties);
+        let broken = scenario.broken.iter().chain(properties.iter().flat_map(|file| &file.broken));
+        this.torn = broken.map(|item| item.span).collect();
+        this.unread = this.torn.iter().map(|head| (head.source, head.end)).collect();
         this.doubt_defaults(scenario);
         this.warn_of_meanings();
         let built = this.build(scenario, files).ok();
@@ -136,33 +138,6 @@ impl<'a> Elaborator<'a> {
         for warning in found {
             self.note(warning);
         }
-    }
-
-    /// Names whose declarations were not read to their end have an unknown meaning and cause no further errors.
-    fn set_aside(&mut self, scenario: &ScenarioFile, properties: &[PropertyFile]) {
-        let lost = scenario.lost.iter().chain(properties.iter().flat_map(|file| &file.lost));
-        self.torn = lost.copied().collect();
-        self.cut.extend(&scenario.cut);
-        self.cut.extend(properties.iter().flat_map(|file| &file.cut));
-        self.torn.extend(&self.cut);
-        self.cut.sort_unstable();
-        // Of two of which one holds the other, that one; a shorter one that starts alike comes before it.
-        let mut cuts: Vec<Span> = Vec::with_capacity(self.cut.len());
-        for cut in self.cut.drain(..) {
-            let within = |other: &Span| other.source == cut.source && other.end >= cut.end;
-            if cuts.last().is_some_and(within) {
-                continue;
-            }
-            cuts.pop_if(|last| last.source == cut.source && last.start == cut.start);
-            cuts.push(cut);
-        }
-        self.cut = cuts;
-        let mut broken = Vec::new();
-        for (scope, names) in self.scopes.iter().enumerate() {
-            let cut = names.entries().filter(|(_, entry)| self.is_cut(entry.span));
-            broken.extend(cut.map(|(name, _)| (scope, name.to_owned())));
-        }
-        self.broken.extend(broken);
     }
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
@@ -372,7 +347,7 @@ impl<'a> Elaborator<'a> {
                 self.note(error);
                 failed = true;
             }
-            sure[slot] &= found[slot].is_none() && !self.is_cut(value.span);
+            sure[slot] &= found[slot].is_none();
             found[slot] = Some((value, name.span));
             self.clock_at.push(value.span);
         }

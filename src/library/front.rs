@@ -353,7 +353,7 @@ fn is_any_world(found: &[Diagnostic], said: &[Diagnostic], input: &Input<'_>, fi
     let source = |one: &Diagnostic| one.place.as_ref().map(|place| usize::from(place.span.source.0));
     let of_setting = |one: &Diagnostic| source(one).map_or(one.code == SETTING, |source| source >= files);
     let of_query = |one: &Diagnostic| source(one).is_none_or(|source| (1..files).contains(&source));
-    let is_lost = || input.properties.iter().any(|file| !file.lost.is_empty() || !file.cut.is_empty());
+    let is_lost = || input.properties.iter().any(|file| !file.broken.is_empty());
     found.iter().chain(said).filter(|one| is_error(one)).any(of_setting)
         || (is_lost() || said.iter().filter(|one| is_error(one)).any(of_query)) && has_used_parameter(input)
 }

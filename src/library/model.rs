@@ -28,7 +28,7 @@ use std::sync::Arc;
 /// ```
 /// use smc::Draft;
 ///
-/// let text = "horizon = 10 steps\nparam n = 3\nprocess p { var x: 0 .. 9 = 0  when x < n -> x = x + 1 }";
+/// let text = "horizon = 10 steps\nparam n = 3\nprocess p { var x: 0 .. 9 = 0; when x < n -> x = x + 1 }";
 /// let model = Draft::new("count.scn", text).set("n", "5").parse().unwrap();
 /// assert!(model.check("check P(F<=5 steps (p.x == 5)) >= 0.9", &smc::Options::default()).is_ok());
 /// ```

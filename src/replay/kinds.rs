@@ -49,7 +49,7 @@ fn with_kind(
             let noise = if name == LANGEVIN { LANGEVIN_NOISE } else { 0.0 };
             let (preset, own) = body_of_user(file);
             radius = own.cloned();
-            let free: String = FREE.iter().map(|(name, value)| format!("{name} = {value}  ")).collect();
+            let free: String = FREE.iter().map(|(name, value)| format!("{name} = {value}; ")).collect();
             Some(format!("kind {name}: sfm preset {preset} {{ {free}noise = {noise} m/s }}\n"))
         }
         (false, Some(preset)) => Some(format!("kind {name}: sfm preset {preset} {{ }}\n")),

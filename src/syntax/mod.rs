@@ -3,6 +3,7 @@
 pub mod ast;
 pub mod codes;
 pub mod diagnostic;
+pub mod keywords;
 pub mod parse;
 pub mod print;
 pub mod render;

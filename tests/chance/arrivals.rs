@@ -8,7 +8,7 @@ use smc::model::Parameter;
 /// Numbers of those who have come by 10 s.
 fn counts(every: &str, layout: Layout, trials: u64) -> Vec<f64> {
     let text = format!(
-        "{HEAD}source doors: adult {{ at = uniform in near  every = {every}  route = west  speed = 0.5 m/s }}"
+        "{HEAD}source doors: adult {{ at = uniform in near; every = {every}; route = west; speed = 0.5 m/s }}"
     );
     let scenario = scenario(&text);
     let mut out = Vec::new();
@@ -56,8 +56,8 @@ fn nobody_comes_in_on_top_of_somebody_and_those_without_room_wait() {
     for layout in [Layout::Trials, Layout::Agents] {
         let text = "horizon = 60 s\nstep = 0.02 s\nkind adult: sfm preset helbing2000 { noise = 0.05 m/s }\n\
             scene { region door: rect (0, 0) .. (1.2, 1.2)\n region west: rect (-60, 0) .. (-50, 1) }\n\
-            agent post: adult { at = (0.4, 0.4)  mass = 10000 kg }\n\
-            source doors: adult { at = uniform in door  every = 0.1 s  route = west  limit = 600 }";
+            agent post: adult { at = (0.4, 0.4); mass = 10000 kg }\n\
+            source doors: adult { at = uniform in door; every = 0.1 s; route = west; limit = 600 }";
         let scenario = scenario(text);
         let mut batch = Batch::new(&scenario, layout, 0);
         let mut waited = false;
@@ -92,7 +92,7 @@ fn nobody_comes_in_on_top_of_somebody_and_those_without_room_wait() {
 #[test]
 fn they_leave_at_their_last_goal() {
     let text = format!(
-        "{HEAD}source doors: adult {{ at = (6, 0)  every = 3 s  route = (4, 0) -> near  noise = 0 m/s  speed = 1.5 m/s }}"
+        "{HEAD}source doors: adult {{ at = (6, 0); every = 3 s; route = (4, 0) -> near; noise = 0 m/s; speed = 1.5 m/s }}"
     );
     let scenario = scenario(&text);
     let first = agent(&scenario, "doors[1]");
@@ -117,7 +117,7 @@ fn they_leave_at_their_last_goal() {
 fn a_trial_in_which_too_many_come_is_unresolved_and_says_why() {
     let text = format!(
         "{HEAD}agent a: adult {{ at = (10, 10) }}\n\
-         source doors: adult {{ at = uniform in near  every = exponential(2 s)  route = west  limit = 32 }}"
+         source doors: adult {{ at = uniform in near; every = exponential(2 s); route = west; limit = 32 }}"
     );
     let study = compiled(&text, "estimate P(F<=60 s (travelled(a) > 1000 m)) by fixed(trials = 200)");
     let run = answered(&study, 0, 1, 1_000);
@@ -138,9 +138,9 @@ fn a_trial_in_which_too_many_come_is_unresolved_and_says_why() {
 fn large_crowds_take_people_in() {
     let text = "horizon = 10 s\nstep = 0.02 s\nkind adult: sfm preset helbing2000 { noise = 0.05 m/s }\n\
         scene { region hall: rect (0, 0) .. (40, 40)\n region west: rect (-50, 0) .. (-1, 40) }\n\
-        behaviour phone { state a { after exponential(1 s) -> b } state b { speed = 0.5 * speed  after 1 s -> a } }\n\
-        agents crowd[300]: adult with phone { at = uniform in hall  route = west }\n\
-        source doors: adult with phone { at = uniform in hall  every = exponential(0.2 s)  route = west }";
+        behaviour phone { state a { after exponential(1 s) -> b }; state b { speed = 0.5 * speed; after 1 s -> a } }\n\
+        agents crowd[300]: adult with phone { at = uniform in hall; route = west }\n\
+        source doors: adult with phone { at = uniform in hall; every = exponential(0.2 s); route = west }";
     let scenario = scenario(text);
     let mut batch = Batch::new(&scenario, Layout::Agents, 0);
     for _ in 0..250 {
@@ -156,7 +156,7 @@ fn large_crowds_take_people_in() {
 #[test]
 fn who_comes_at_once_is_there_in_the_first_state() {
     let text = format!(
-        "{HEAD}source doors: adult {{ at = uniform in near  every = bernoulli(50 %) * 1 s  route = west  limit = 90 }}"
+        "{HEAD}source doors: adult {{ at = uniform in near; every = bernoulli(50 %) * 1 s; route = west; limit = 90 }}"
     );
     let study = compiled(&text, "estimate P(F<=0 s (count(a in doors) >= 1)) by fixed(trials = 400)");
     let counts = answered(&study, 0, 1, 1_000).results[0].consumed.counts;

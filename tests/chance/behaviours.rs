@@ -38,7 +38,7 @@ fn the_share_of_time_in_a_state_is_the_ratio_of_the_means() {
 #[test]
 fn what_a_state_sets_never_compounds() {
     let text =
-        format!("{HEAD}{PHONE}agents crowd[6]: adult with phone {{ at = uniform in near  route = west }}");
+        format!("{HEAD}{PHONE}agents crowd[6]: adult with phone {{ at = uniform in near; route = west }}");
     let scenario = scenario(&text);
     for layout in [Layout::Trials, Layout::Agents] {
         let mut batch = Batch::new(&scenario, layout, 0);
@@ -77,8 +77,8 @@ fn what_a_state_sets_never_compounds() {
 fn attention_scales_the_social_force() {
     let force = |attention: &str| {
         let text = format!(
-            "{HEAD}agent a: adult {{ at = (0, 0)  radius = 0.3 m  attention = {attention} }}\n\
-             agent b: adult {{ at = (0.8, 0.1)  radius = 0.3 m }}"
+            "{HEAD}agent a: adult {{ at = (0, 0); radius = 0.3 m; attention = {attention} }}\n\
+             agent b: adult {{ at = (0.8, 0.1); radius = 0.3 m }}"
         );
         let batch = Batch::new(&scenario(&text), Layout::Trials, 0);
         [batch.state.motion.fx[0].0[0], batch.state.motion.fx[1].0[0]]
@@ -95,8 +95,8 @@ fn attention_scales_the_social_force() {
     // A state does the same.
     let text = format!(
         "{HEAD}behaviour blind {{ state always {{ attention = 0 }} }}\n\
-         agent a: adult with blind {{ at = (0, 0)  radius = 0.3 m }}\n\
-         agent b: adult {{ at = (0.8, 0.1)  radius = 0.3 m }}"
+         agent a: adult with blind {{ at = (0, 0); radius = 0.3 m }}\n\
+         agent b: adult {{ at = (0.8, 0.1); radius = 0.3 m }}"
     );
     let batch = Batch::new(&scenario(&text), Layout::Trials, 0);
     assert_eq!(batch.state.motion.fx[0].0[0], 0.0);
@@ -107,9 +107,9 @@ fn attention_scales_the_social_force() {
 fn advised(with: &str) -> String {
     format!(
         "{HEAD}behaviour heedful(p) {{ on advice {{ choose {{ p: follow | 1 - p: ignore }} }} }}\n\
-         agent user: adult{with} {{ at = (2, 1.5)  route = west }}\n\
-         agents crowd[4]: adult {{ at = uniform in near  route = west }}\n\
-         moves user for 2 s {{ heading 40 deg  heading 0 deg  stop }}"
+         agent user: adult{with} {{ at = (2, 1.5); route = west }}\n\
+         agents crowd[4]: adult {{ at = uniform in near; route = west }}\n\
+         moves user for 2 s {{ heading 40 deg; heading 0 deg; stop }}"
     )
 }
 
@@ -166,11 +166,11 @@ fn conditions_read_agents_processes_and_behaviours() {
     let text = format!(
         "{HEAD}process bell {{ var n: 0 .. 500 = 0\n when n < 500 -> n = n + 1 }}\n\
          process count {{ var runs: 0 .. 5000 = 0\n when lead.pace == fast -> runs = runs + 1 }}\n\
-         behaviour pace {{\n state slow {{ speed = 0.4 m/s  when bell.n == 100 -> fast }}\n\
-         state fast {{ speed = 1.2 m/s  when travelled(self) > 5 m -> done }}\n state done {{ speed = 0 m/s }} }}\n\
-         behaviour shy {{ state calm {{ when distance(self, lead) > 4 m -> alone }} state alone {{ }} }}\n\
-         agent lead: adult with pace {{ at = (0, 0)  route = west  noise = 0 m/s }}\n\
-         agent other: adult with shy {{ at = (1, 20)  noise = 0 m/s }}"
+         behaviour pace {{\n state slow {{ speed = 0.4 m/s; when bell.n == 100 -> fast }}\n\
+         state fast {{ speed = 1.2 m/s; when travelled(self) > 5 m -> done }}\n state done {{ speed = 0 m/s }} }}\n\
+         behaviour shy {{ state calm {{ when distance(self, lead) > 4 m -> alone }}; state alone {{ }} }}\n\
+         agent lead: adult with pace {{ at = (0, 0); route = west; noise = 0 m/s }}\n\
+         agent other: adult with shy {{ at = (1, 20); noise = 0 m/s }}"
     );
     let scenario = scenario(&text);
     let mut batch = Batch::new(&scenario, Layout::Trials, 0);
@@ -198,7 +198,7 @@ fn branches_of_transitions_have_their_probabilities() {
     let text = format!(
         "{HEAD}process world {{ var p = 0.2 }}\nbehaviour b {{\n\
          state start {{ after 0.02 s -> world.p: left | 0.5: right | 0.5 - world.p: far }}\n\
-         state left {{ }} state right {{ }} state far {{ speed = 0.1 m/s + 0.5 * speed }} }}\n\
+         state left {{ }}; state right {{ }}; state far {{ speed = 0.1 m/s + 0.5 * speed }} }}\n\
          agents crowd[40]: adult with b {{ at = uniform in near }}"
     );
     let scenario = scenario(&text);
@@ -222,7 +222,7 @@ fn of_times_that_end_within_one_step_the_shortest_wins() {
     let first = |a: &str, b: &str| {
         let text = format!(
             "horizon = 2 s\nstep = 0.1 s\nkind adult: sfm preset helbing2000 {{ }}\n\
-             behaviour race {{ state a {{ after {a} -> b  after {b} -> c }} state b {{ }} state c {{ }} }}\n\
+             behaviour race {{ state a {{ after {a} -> b; after {b} -> c }}; state b {{ }}; state c {{ }} }}\n\
              agent me: adult with race {{ at = (0, 0) }}\n"
         );
         let study = compiled(&text, "estimate P(F me.race == b) by fixed(trials = 4000)\n");
@@ -238,8 +238,8 @@ fn of_times_that_end_within_one_step_the_shortest_wins() {
 fn a_state_can_send_elsewhere_and_back() {
     let text = format!(
         "{HEAD}behaviour errand {{ state going {{ after 4 s -> away }}\n\
-         state away {{ route = (-3, 30) -> wait 1 s -> (-6, 30)  after 60 s -> going }} }}\n\
-         agent a: adult with errand {{ at = (0, 0)  route = (-20, 0) -> west  noise = 0 m/s  speed = 1 m/s }}"
+         state away {{ route = (-3, 30) -> wait 1 s -> (-6, 30); after 60 s -> going }} }}\n\
+         agent a: adult with errand {{ at = (0, 0); route = (-20, 0) -> west; noise = 0 m/s; speed = 1 m/s }}"
     )
     .replace("after 60 s", "when position(self).y > 5 m");
     let scenario = scenario(&text);
@@ -262,9 +262,9 @@ fn a_state_can_send_elsewhere_and_back() {
 fn several_behaviours_of_one_agent_and_the_order_of_with() {
     let text = |with: &str| {
         format!(
-            "{HEAD}behaviour tired {{ state always {{ speed = 0.5 * speed  tau = 0.7 s }} }}\n\
+            "{HEAD}behaviour tired {{ state always {{ speed = 0.5 * speed; tau = 0.7 s }} }}\n\
              behaviour brisk {{ state always {{ speed = uniform(1.6 m/s, 1.8 m/s) }} }}\n\
-             agent a: adult with {with} {{ at = (0, 0)  route = west  speed = 1 m/s }}"
+             agent a: adult with {with} {{ at = (0, 0); route = west; speed = 1 m/s }}"
         )
     };
     let read = |with: &str| {
@@ -281,7 +281,7 @@ fn several_behaviours_of_one_agent_and_the_order_of_with() {
 fn what_nobody_can_move_with_is_an_error_of_the_model() {
     let text = format!(
         "{HEAD}process clock {{ var n: 0 .. 100 = 0\n when n < 100 -> n = n + 1 }}\n\
-         behaviour slower {{ state calm {{ after 1 s -> odd }} state odd {{ tau = (49 - clock.n) * tau }} }}\n\
+         behaviour slower {{ state calm {{ after 1 s -> odd }}; state odd {{ tau = (49 - clock.n) * tau }} }}\n\
          agent a: adult with slower {{ at = (0, 0) }}"
     );
     let study = compiled(&text, "estimate P(F<=2 s (travelled(a) > 100 m)) within 0.1");
@@ -293,8 +293,8 @@ fn what_nobody_can_move_with_is_an_error_of_the_model() {
 #[test]
 fn a_trial_is_the_same_in_every_lane_and_beside_any_other() {
     let text = format!(
-        "{HEAD}{PHONE}agents crowd[5]: adult with phone {{ at = uniform in near  route = west }}\n\
-         source doors: adult with phone {{ at = uniform in near  every = exponential(2 s)  route = west }}"
+        "{HEAD}{PHONE}agents crowd[5]: adult with phone {{ at = uniform in near; route = west }}\n\
+         source doors: adult with phone {{ at = uniform in near; every = exponential(2 s); route = west }}"
     );
     let scenario = scenario(&text);
     let agents = scenario.agents.len();
@@ -328,8 +328,8 @@ fn a_trial_is_the_same_in_every_lane_and_beside_any_other() {
 #[test]
 fn threads_and_batches_change_no_byte() {
     let text = format!(
-        "{HEAD}{PHONE}agent user: adult {{ at = (1, 1)  route = west }}\n\
-         source doors: adult with phone {{ at = uniform in near  every = exponential(2 s)  route = west }}"
+        "{HEAD}{PHONE}agent user: adult {{ at = (1, 1); route = west }}\n\
+         source doors: adult with phone {{ at = uniform in near; every = exponential(2 s); route = west }}"
     );
     let study =
         compiled(&text, "estimate P(F<=8 s (min(distance(user, a) for a in doors) < 1 m)) within 0.05");
@@ -350,10 +350,10 @@ fn threads_and_batches_change_no_byte() {
 fn names_and_functions_of_a_behaviour_see_one_another_and_the_own_parameters() {
     let body = |lets: &str, slow: &str, near: &str| {
         format!(
-            "{HEAD}behaviour wary(gap) {{ {lets} state walking {{ when {near} -> waiting }}\n\
-             state waiting {{ speed = {slow}  when !({near}) -> walking }} }}\n\
+            "{HEAD}behaviour wary(gap) {{ {lets}; state walking {{ when {near} -> waiting }}\n\
+             state waiting {{ speed = {slow}; when !({near}) -> walking }} }}\n\
              agent post: adult {{ at = (3, 2) }}\n\
-             agents crowd[4]: adult with wary(1.5 m) {{ at = uniform in rect (0, 0) .. (2, 4)  route = west }}"
+             agents crowd[4]: adult with wary(1.5 m) {{ at = uniform in rect (0, 0) .. (2, 4); route = west }}"
         )
     };
     let plain = body(
@@ -363,9 +363,9 @@ fn names_and_functions_of_a_behaviour_see_one_another_and_the_own_parameters() {
     );
     // Used before they are declared; `a` inside is the argument, outside the running one.
     let named = body(
-        "let slow = part * speed  let part = 1 / 4\n\
+        "let slow = part * speed; let part = 1 / 4\n\
          let close = exists a in others(self): near(a) & (of_post(2 * gap) | distance(self, a) < 1 m)\n\
-         let near(a) = distance(self, a) < gap  let of_post(d) = distance(self, post) < d",
+         let near(a) = distance(self, a) < gap; let of_post(d) = distance(self, post) < d",
         "slow",
         "close",
     );
@@ -385,8 +385,8 @@ fn names_and_functions_of_a_behaviour_see_one_another_and_the_own_parameters() {
 fn a_condition_may_ask_for_the_state_of_another_behaviour() {
     let text = |whose: &str| {
         format!(
-            "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }} state angry {{ }} }}\n\
-             behaviour phone {{ state away {{ when {whose}.mood == angry -> looking }} state looking {{ }} }}\n\
+            "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }}; state angry {{ }} }}\n\
+             behaviour phone {{ state away {{ when {whose}.mood == angry -> looking }}; state looking {{ }} }}\n\
              agent me: adult with mood, phone {{ at = (0, 0) }}\n\
              agent other: adult with mood {{ at = (50, 0) }}\n\
              agent third: adult {{ at = (100, 0) }}"
@@ -400,8 +400,8 @@ fn a_condition_may_ask_for_the_state_of_another_behaviour() {
     }
     // Of a behaviour that nobody has it is not known who could ask for what.
     let nobody = format!(
-        "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }} state angry {{ }} }}\n\
-         behaviour phone {{ state away {{ when self.mood == angry -> looking }} state looking {{ }} }}\n\
+        "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }}; state angry {{ }} }}\n\
+         behaviour phone {{ state away {{ when self.mood == angry -> looking }}; state looking {{ }} }}\n\
          agent me: adult {{ at = (0, 0) }}"
     );
     compiled(&nobody, "");

@@ -5,7 +5,7 @@ use smc::base::lanes::LANES;
 use smc::kernel::Layout;
 use smc::model::Parameter;
 
-const CROWD: &str = "agents crowd[4]: adult { at = uniform in near  route = west }\n";
+const CROWD: &str = "agents crowd[4]: adult { at = uniform in near; route = west }\n";
 
 /// Bits of the crowd at every state, in all lanes.
 fn trace(text: &str, layout: Layout) -> Vec<Vec<Vec<u64>>> {
@@ -23,7 +23,7 @@ fn trace(text: &str, layout: Layout) -> Vec<Vec<Vec<u64>>> {
 
 #[test]
 fn a_source_that_never_fires_changes_no_byte() {
-    let source = "source late: adult { at = (1, 3)  every = 50 s  route = west }\n";
+    let source = "source late: adult { at = (1, 3); every = 50 s; route = west }\n";
     for layout in [Layout::Trials, Layout::Agents] {
         assert_eq!(trace(CROWD, layout), trace(&format!("{CROWD}{source}"), layout), "{layout:?}");
         assert_eq!(trace(CROWD, layout), trace(&format!("{source}{CROWD}"), layout), "{layout:?}");
@@ -33,7 +33,7 @@ fn a_source_that_never_fires_changes_no_byte() {
 #[test]
 fn a_behaviour_that_changes_nothing_changes_no_byte() {
     let idle = "behaviour idle { state a { after exponential(1 s) -> 0.5: a | 0.5: b }\n\
-                state b { speed = speed  noise = 1 * noise  after 0.5 s -> a } }\n";
+                state b { speed = speed; noise = 1 * noise; after 0.5 s -> a } }\n";
     let with = CROWD.replace(": adult {", ": adult with idle {");
     for layout in [Layout::Trials, Layout::Agents] {
         let plain = trace(CROWD, layout);
@@ -51,8 +51,8 @@ fn a_behaviour_that_changes_nothing_changes_no_byte() {
 #[test]
 fn another_behaviour_leaves_the_first_as_it_is() {
     let phone = "behaviour phone { state a { after exponential(1 s) -> b }\n\
-                 state b { speed = 0.5 * speed  after uniform(1 s, 2 s) -> a } }\n\
-                 behaviour other { state c { after exponential(0.7 s) -> 0.5: c | 0.5: d } state d { } }\n";
+                 state b { speed = 0.5 * speed; after uniform(1 s, 2 s) -> a } }\n\
+                 behaviour other { state c { after exponential(0.7 s) -> 0.5: c | 0.5: d }; state d { } }\n";
     let one = format!("{phone}{}", CROWD.replace(": adult {", ": adult with phone {"));
     let two = format!("{phone}{}", CROWD.replace(": adult {", ": adult with other, phone {"));
     assert_eq!(trace(&one, Layout::Trials), trace(&two, Layout::Trials));
@@ -64,7 +64,7 @@ fn the_pauses_of_a_detour_do_not_depend_on_the_routes_of_others() {
     let stray = "behaviour stray { state a { after 0.2 s -> b }\n\
                  state b { route = wait uniform(0.2 s, 2 s) -> (3, 30) } }\n";
     let with = format!("{stray}{}", CROWD.replace(": adult {", ": adult with stray {"));
-    let other = "agent other: adult { at = (-200, 0)  route = (-250, 0) -> wait 1 s -> west }\n";
+    let other = "agent other: adult { at = (-200, 0); route = (-250, 0) -> wait 1 s -> west }\n";
     let plain = trace(&with, Layout::Trials);
     assert!(plain == trace(&format!("{with}{other}"), Layout::Trials));
     assert!(plain == trace(&format!("{other}{with}"), Layout::Trials));
@@ -93,7 +93,7 @@ fn who_comes_is_the_same_whoever_else_is_there_and_however_long_it_lasts() {
         }
         seen
     };
-    let source = "source doors: adult { at = uniform in near  every = exponential(2 s)  route = west }\n";
+    let source = "source doors: adult { at = uniform in near; every = exponential(2 s); route = west }\n";
     let short = arrivals(&format!("{HEAD}{source}"));
     assert!(short.iter().flatten().count() > 3);
     assert_eq!(

@@ -8,11 +8,11 @@ use smc::kernel::Layout;
 /// beside it.
 fn times(preset: &str, n: usize, offset: Option<f64>, layout: Layout) -> Vec<f64> {
     let other = offset.map(|offset| {
-        format!("group east[{n}]: adult as particle {{ at = (20, {offset})  route = (-80, {offset}) }}\n")
+        format!("group east[{n}]: adult as particle {{ at = (20, {offset}); route = (-80, {offset}) }}\n")
     });
     let text = format!(
-        "horizon = 60 s\nstep = 0.02 s\nkind adult: sfm preset {preset} {{ radius = 0.3 m  speed = 1.34 m/s }}\n\
-         group west[{n}]: adult as particle {{ at = (0, 0)  route = (100, 0) }}\n{}",
+        "horizon = 60 s\nstep = 0.02 s\nkind adult: sfm preset {preset} {{ radius = 0.3 m; speed = 1.34 m/s }}\n\
+         group west[{n}]: adult as particle {{ at = (0, 0); route = (100, 0) }}\n{}",
         other.unwrap_or_default()
     );
     let scene = scenario(&text);

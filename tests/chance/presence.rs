@@ -15,8 +15,8 @@ fn share(scenario: &str, formula: &str) -> f64 {
 /// Somebody comes each five seconds at 6 m, walks to 2 m and leaves, after less than four seconds.
 fn doors() -> String {
     format!(
-        "{HEAD}agent user: adult {{ at = (3, 20)  noise = 0 m/s }}\n\
-         source doors: adult {{ at = (6, 0)  every = 5 s  route = near  noise = 0 m/s  speed = 1.5 m/s }}"
+        "{HEAD}agent user: adult {{ at = (3, 20); noise = 0 m/s }}\n\
+         source doors: adult {{ at = (6, 0); every = 5 s; route = near; noise = 0 m/s; speed = 1.5 m/s }}"
     )
 }
 
@@ -99,7 +99,7 @@ fn formulas_over_time_ask_who_is_there_when_they_are_asked() {
         assert_eq!(share(&text, formula), expected, "{formula}");
     }
     let leaver = format!(
-        "{HEAD}agents two[2]: adult {{ at = uniform in rect (4, 0) .. (6, 6)  route = near then leave }}"
+        "{HEAD}agents two[2]: adult {{ at = uniform in rect (4, 0) .. (6, 6); route = near then leave }}"
     );
     assert_eq!(share(&leaver, "F<=15 s (forall a in two: G<=1 s (a in west))"), 1.0, "once both have left");
 }

@@ -8,9 +8,9 @@ use smc::model::Parameter;
 /// Somebody comes each `every` at 6 m, with own parameters, waits a drawn time on the way, and leaves at 2 m.
 fn doors(every: &str, limit: &str) -> String {
     format!(
-        "{HEAD}behaviour phone {{ state a {{ after exponential(1 s) -> b }} state b {{ speed = 0.6 * speed  after 1 s -> a }} }}\n\
-         source doors: adult with phone {{ at = uniform in rect (5, 0) .. (6, 30)  every = {every}\n\
-         route = (4, 10) -> wait uniform(0 s, 1 s) -> west then leave  {limit} }}"
+        "{HEAD}behaviour phone {{ state a {{ after exponential(1 s) -> b }}; state b {{ speed = 0.6 * speed; after 1 s -> a }} }}\n\
+         source doors: adult with phone {{ at = uniform in rect (5, 0) .. (6, 30); every = {every}\n\
+         route = (4, 10) -> wait uniform(0 s, 1 s) -> west then leave; {limit} }}"
     )
 }
 
@@ -110,10 +110,10 @@ fn the_numbers_of_a_person_do_not_depend_on_the_place() {
 fn noise_that_a_behaviour_sets_takes_nobody_through_a_wall() {
     let scenario = scenario(
         "horizon = 20 s\nstep = 0.1 s\n\
-         kind k: sfm preset helbing2000 { A = 0 N  radius = 0.3 m  k1 = 4e5 kg/s^2  mass = 60 kg  tau = 0.1 s }\n\
+         kind k: sfm preset helbing2000 { A = 0 N; radius = 0.3 m; k1 = 4e5 kg/s^2; mass = 60 kg; tau = 0.1 s }\n\
          scene { region box: rect (1, 1) .. (9, 9)\n\
          wall around: (0, 0) -- (10, 0) -- (10, 10) -- (0, 10) -- (0, 0) }\n\
-         behaviour wild { state calm { after 0.1 s -> mad } state mad { noise = 2.6 m/s  after 1000 s -> calm } }\n\
+         behaviour wild { state calm { after 0.1 s -> mad }; state mad { noise = 2.6 m/s; after 1000 s -> calm } }\n\
          agents a[8]: k with wild { at = uniform in box }",
     );
     for first in (0..160).step_by(8) {
@@ -140,7 +140,7 @@ fn who_comes_to_a_place_that_is_left_in_the_same_step_has_not_made_it() {
         let scenario = scenario(&format!(
             "horizon = 20 s\nstep = 0.02 s\nkind adult: sfm preset helbing2000 {{ radius = 0.25 m }}\n\
              scene {{ wall south: (0, 0) -- (10, 0)\n region here: rect (4, 0) .. (6, 5) }}\n\
-             source doors: adult {{ at = (5, 0.4)  every = 1 s  limit = {limit}  route = wait 1 s -> here }}"
+             source doors: adult {{ at = (5, 0.4); every = 1 s; limit = {limit}; route = wait 1 s -> here }}"
         ));
         let mut batch = Batch::new(&scenario, Layout::Trials, 0);
         let mut entries = Vec::new();
@@ -203,11 +203,11 @@ fn where_behaviours_speak_of_single_ones_places_are_used_once() {
 fn newcomers_on_a_used_place_are_felt_in_every_lane_as_alone() {
     // The goal lies beside the entry, so that who comes next stands where the one before left, with another B.
     let text = "horizon = 12 s\nstep = 0.02 s\n\
-        scene { region door: rect (0,-1) .. (0.4,1) region kiosk: rect (1.2,-1) .. (1.5,1) }\n\
-        kind k: sfm preset helbing2000 { noise = 0 m/s radius = 0.2 m lambda = 0.5 }\n\
-        kind v: k { B = choice(0.02 m, 0.3 m) speed = uniform(0.9 m/s, 1.5 m/s) }\n\
-        source doors: v { at = (0.35, 0) every = uniform(4.2 s, 4.5 s) limit = 1 route = kiosk -> door then leave }\n\
-        agent stander: k { B = 0.02 m at = (2.6, 0.3) }\n";
+        scene { region door: rect (0,-1) .. (0.4,1); region kiosk: rect (1.2,-1) .. (1.5,1) }\n\
+        kind k: sfm preset helbing2000 { noise = 0 m/s; radius = 0.2 m; lambda = 0.5 }\n\
+        kind v: k { B = choice(0.02 m, 0.3 m); speed = uniform(0.9 m/s, 1.5 m/s) }\n\
+        source doors: v { at = (0.35, 0); every = uniform(4.2 s, 4.5 s); limit = 1; route = kiosk -> door then leave }\n\
+        agent stander: k { B = 0.02 m; at = (2.6, 0.3) }\n";
     let scenario = scenario(text);
     let people = scenario.agents.len();
     let mut together = Batch::new(&scenario, Layout::Trials, 0);

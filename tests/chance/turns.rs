@@ -9,12 +9,12 @@ use smc::model::Parameter;
 fn what_a_state_sets_is_computed_on_entering_it_and_kept() {
     // In state k the process is at k; sixteenths are numbers without rounding.
     let text = "horizon = 10 s\nstep = 0.1 s\n\
-        kind adult: sfm preset helbing2000 { speed = 1 m/s  tau = 0.5 s }\n\
+        kind adult: sfm preset helbing2000 { speed = 1 m/s; tau = 0.5 s }\n\
         process level { var n: 0 .. 100 = 0\n when n < 100 -> n = n + 1 }\n\
         behaviour rising { state start { after 1 s -> set }\n\
-        state set { speed = level.n * 0.0625 m/s  after 3 s -> set } }\n\
-        behaviour other { state calm { after 2 s -> odd } state odd { tau = 0.25 s  after 1 s -> slow }\n\
-        state slow { speed = 0.5 * speed  after 0.5 s -> over } state over { } }\n\
+        state set { speed = level.n * 0.0625 m/s; after 3 s -> set } }\n\
+        behaviour other { state calm { after 2 s -> odd }; state odd { tau = 0.25 s; after 1 s -> slow }\n\
+        state slow { speed = 0.5 * speed; after 0.5 s -> over }; state over { } }\n\
         behaviour restless { state always { noise = uniform(0.01 m/s, 0.02 m/s) } }\n\
         agent a: adult with rising, other, restless { at = (0, 0) }";
     let scenario = scenario(text);
@@ -58,19 +58,19 @@ fn of_behaviours_that_turn_in_one_step_nothing_in_between_shows() {
             "horizon = 8 s\nstep = 0.1 s\n\
              scene {{ region home: rect (0, 0) .. (2, 4)\n region a: rect (10, 0) .. (12, 4)\n\
              region b: rect (-12, 0) .. (-10, 4) }}\n{behaviours}\n\
-             kind walker: sfm preset helbing2000 {{ speed = 0.5 m/s  noise = 0 m/s }}\n\
-             agent user: walker with {} {{ at = (1, 2)  route = home then leave }}\n\
-             agent other: walker with {} {{ at = (1, 3)  route = home then leave }}",
+             kind walker: sfm preset helbing2000 {{ speed = 0.5 m/s; noise = 0 m/s }}\n\
+             agent user: walker with {} {{ at = (1, 2); route = home then leave }}\n\
+             agent other: walker with {} {{ at = (1, 3); route = home then leave }}",
             with[0], with[1]
         )
     };
     let two = text(
-        "behaviour first { state start { route = a  after 1 s -> done } state done { } }\n\
-         behaviour second { state calm { after 1 s -> odd } state odd { route = b } }",
+        "behaviour first { state start { route = a; after 1 s -> done }; state done { } }\n\
+         behaviour second { state calm { after 1 s -> odd }; state odd { route = b } }",
         ["first, second", "second, first"],
     );
     let one = text(
-        "behaviour only { state start { route = a  after 1 s -> odd } state odd { route = b } }",
+        "behaviour only { state start { route = a; after 1 s -> odd }; state odd { route = b } }",
         ["only", "only"],
     );
     let (two, one) = (scenario(&two), scenario(&one));
@@ -102,8 +102,8 @@ fn a_wait_that_is_interrupted_goes_on_with_what_is_left_of_it() {
              scene {{ region goal: rect (100, 0) .. (110, 10)\n region kiosk: rect (0, 0) .. (2, 4)\n\
              region nook: rect (0, 1) .. (2, 3) }}\n\
              behaviour errand {{ {behaviour} }}\n\
-             kind walker: sfm preset helbing2000 {{ speed = 1 m/s  noise = 0 m/s }}\n\
-             agent user: walker with errand {{ at = (1, 2)  route = wait {wait} -> goal }}"
+             kind walker: sfm preset helbing2000 {{ speed = 1 m/s; noise = 0 m/s }}\n\
+             agent user: walker with errand {{ at = (1, 2); route = wait {wait} -> goal }}"
         );
         let mut batch = Batch::new(&scenario(&text), layout, 0);
         let mut found = vec![None; batch.state.width()];
@@ -119,11 +119,11 @@ fn a_wait_that_is_interrupted_goes_on_with_what_is_left_of_it() {
     };
     let none = "state only { }";
     let once =
-        "state start { after 4 s -> away } state away { route = kiosk  after 1 s -> back } state back { }";
+        "state start { after 4 s -> away }; state away { route = kiosk; after 1 s -> back }; state back { }";
     // From one detour to the next without going back, and a third one later.
-    let thrice = "state start { after 1 s -> away } state away { route = kiosk  after 1 s -> farther }\n\
-        state farther { route = nook  after 0.5 s -> back } state back { after 0.4 s -> again }\n\
-        state again { route = kiosk  after 0.3 s -> over } state over { }";
+    let thrice = "state start { after 1 s -> away }; state away { route = kiosk; after 1 s -> farther }\n\
+        state farther { route = nook; after 0.5 s -> back }; state back { after 0.4 s -> again }\n\
+        state again { route = kiosk; after 0.3 s -> over }; state over { }";
     for layout in [Layout::Trials, Layout::Agents] {
         let all = |tick: i32| vec![tick; if layout == Layout::Trials { LANES } else { 1 }];
         assert_eq!(leaves(none, "5 s", layout), all(50));

@@ -12,7 +12,7 @@ tracks here = stream
 kind adult: sfm preset helbing2000 { noise = 0.05 m/s }
 agent user: adult from here at 0 s id 2
 agents others: adult from here at 0 s except 2
-moves user for 0.5 s { heading -30 deg  heading 0 deg  heading 30 deg  stop }
+moves user for 0.5 s { heading -30 deg; heading 0 deg; heading 30 deg; stop }
 ";
 const RANK: &str = "property clear = G<=1 s (forall a in others: distance(user, a) > 0.5 m)
 property onward = F<=1 s (travelled(user) > 0.5 m)

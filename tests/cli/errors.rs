@@ -233,8 +233,8 @@ fn a_ranking_with_few_trials_takes_those_there_are() {
 /// Two push each other beyond every human speed at once.
 const DIVERGES: &str = "horizon = 4 s
 step = 0.02 s
-kind adult: sfm preset helbing2000 { noise = 0.05 m/s  A = 1e9 N }
-agent wild: adult { at = (2, 2)  route = (60, 2) }
+kind adult: sfm preset helbing2000 { noise = 0.05 m/s; A = 1e9 N }
+agent wild: adult { at = (2, 2); route = (60, 2) }
 agent other: adult { at = (3, 2) }
 moves wild for 1 s { heading from -30 deg to 30 deg by 30 deg }
 ";
@@ -279,8 +279,8 @@ fn the_hint_fits_the_cause() {
 step = 0.05 s
 scene { region hall: rect (0, 0) .. (5, 5) }
 kind adult: sfm preset helbing2000
-agent me: adult { at = (9, 2)  route = (20, 2) }
-source door: adult { at = uniform in hall  every = exponential(10 s)  route = (20, 2)  limit = 3 }
+agent me: adult { at = (9, 2); route = (20, 2) }
+source door: adult { at = uniform in hall; every = exponential(10 s); route = (20, 2); limit = 3 }
 ";
     let properties = "check P(F<=20 s (travelled(me) > 20 m)) >= 0.5\n\
                       check P(F<=5 s (mean(speed(a) for a in door) > 2 m/s)) >= 0.5\n";
@@ -309,9 +309,9 @@ fn a_step_that_is_too_long_for_the_forces_is_warned_of_once() {
     };
     let preset = |name: &str| format!("kind adult: sfm preset {name}");
     let helbing = preset("helbing2000");
-    let heavy = "kind adult: sfm preset helbing2000 { mass = uniform(50 kg, 90 kg)  A = 4000 N }";
+    let heavy = "kind adult: sfm preset helbing2000 { mass = uniform(50 kg, 90 kg); A = 4000 N }";
     let fast = "kind adult: sfm preset helbing2000 { speed = 5 m/s }";
-    let steep = "kind adult: sfm preset helbing2000 { speed = 3 m/s  A = 500 N  B = 0.02 m }";
+    let steep = "kind adult: sfm preset helbing2000 { speed = 3 m/s; A = 500 N; B = 0.02 m }";
     let cases: [(&str, &str, &[&str]); 12] = [
         ("0.1 s", &helbing, &["`adult` (at most 0.0461 s)", "`step = 0.025 s`", "n = 6"]),
         ("1 s / 10", &helbing, &["`step = 0.025 s`"]),
@@ -373,7 +373,7 @@ fn a_stream_of_outcomes_that_is_none_is_an_object_too() {
 
 #[test]
 fn a_formula_without_a_temporal_operator_is_read_in_the_first_state() {
-    let scenario = "horizon = 9 steps\nparam mode = 1 in 0 .. 5\nprocess w { var x: 0 .. 9 = 0  when x < 9 -> x = x + 1 }\n";
+    let scenario = "horizon = 9 steps\nparam mode = 1 in 0 .. 5\nprocess w { var x: 0 .. 9 = 0; when x < 9 -> x = x + 1 }\n";
     let warned = |property: &str| {
         let place = Place::new(&[("a.scn", scenario), ("a.bltl", property)]);
         let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--max-trials", "4"]);
@@ -410,7 +410,7 @@ fn real_variables_are_not_to_be_compared_for_equality_and_ranges_have_a_limit() 
         let place = Place::new(&[("a.scn", model), ("a.bltl", property)]);
         place.call(&["check", "a.scn", "a.bltl", "-q", "--max-trials", "4"]).err
     };
-    let model = "horizon = 9 steps\nprocess tank { var level = 0  var n: 0 .. 9 = 0\n  when level != 1 & n < 9 -> { level = level + 0.1; n = n + 1 } }\n";
+    let model = "horizon = 9 steps\nprocess tank { var level = 0; var n: 0 .. 9 = 0\n  when level != 1 & n < 9 -> { level = level + 0.1; n = n + 1 } }\n";
     let said = place(
         model,
         "check P(F (2 * tank.level == 0.6)) >= 0.5\ncheck P(F (tank.n == 3 & tank.level > 0.5 & round(tank.level) == 1)) >= 0.5\n",

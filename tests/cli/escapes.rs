@@ -102,7 +102,7 @@ fn imports_and_tracks_may_begin_with_the_mark_of_utf_8() {
         ("t.txt", tracks),
     ]);
     let text = format!(
-        "scene {{ import \"w.wkt\" import \"g.geojson\" }}\ntracks t = eth_biwi \"t.txt\"\n{SMALL}agent seen: adult from t at 0 s id 1\n"
+        "scene {{ import \"w.wkt\"; import \"g.geojson\" }}\ntracks t = eth_biwi \"t.txt\"\n{SMALL}agent seen: adult from t at 0 s id 1\n"
     );
     place.write("a.scn", text.as_bytes());
     let said = place.call(&["show", "a.scn"]);

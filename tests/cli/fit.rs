@@ -26,7 +26,7 @@ fn turning() -> String {
 }
 
 const MODEL: &str = "horizon = 4.8 s\nstep = 0.1 s\ntracks here = csv \"t.csv\"\n\
-    kind adult: sfm preset helbing2000 { A = 0 N  tau = 0.1 s  noise = 0.02 m/s }\n\
+    kind adult: sfm preset helbing2000 { A = 0 N; tau = 0.1 s; noise = 0.02 m/s }\n\
     agent user: adult from here at 0 s id 1 { heading = recorded + normal(0 deg, 5 deg) }\n\
     agents others: adult from here at 0 s except 1 { heading = recorded + normal(0 deg, 5 deg) }\n";
 

@@ -141,9 +141,9 @@ fn filters_of_imports_come_before_what_is_wrong_with_shapes() {
 
 #[test]
 fn what_the_draw_makes_impossible_is_unresolved() {
-    let scenario = "horizon = 0.1 s  step = 0.02 s\n\
-        scene { obstacle rect (1, -1) .. (6, 1.1)  region strip: rect (0, 0) .. (6, 0.1) }\n\
-        kind adult: sfm preset helbing2000 { noise = 0.05 m/s  radius = uniform(0.15 m, 0.45 m) }\n\
+    let scenario = "horizon = 0.1 s; step = 0.02 s\n\
+        scene { obstacle rect (1, -1) .. (6, 1.1); region strip: rect (0, 0) .. (6, 0.1) }\n\
+        kind adult: sfm preset helbing2000 { noise = 0.05 m/s; radius = uniform(0.15 m, 0.45 m) }\n\
         agents crowd[3]: adult { at = uniform in strip }\n";
     let query = "estimate P(F<=0.1 s contact(crowd[1])) by fixed(trials = 60)\n";
     let place = Place::new(&[("a.scn", scenario), ("a.bltl", query)]);
@@ -167,7 +167,7 @@ fn nobody_comes_twice_from_a_recording() {
     let place = Place::new(&[("t.txt", tracks)]);
     let show = |people: &str| {
         let scenario = format!(
-            "horizon = 1 s  step = 0.02 s\ntracks t = eth_biwi \"t.txt\"\n\
+            "horizon = 1 s; step = 0.02 s\ntracks t = eth_biwi \"t.txt\"\n\
              kind adult: sfm preset helbing2000 {{ noise = 0.05 m/s }}\n{people}\n"
         );
         place.write("a.scn", scenario.as_bytes());
@@ -192,9 +192,9 @@ fn those_recorded_in_an_obstacle_start_beside_it() {
     let tracks =
         "1 1 2.25 0 0.5 0 0 0.5\n1 2 5 0 0.5 0 0 0.5\n11 1 2.25 0 0.7 0 0 0.5\n11 2 5 0 0.7 0 0 0.5\n";
     let scenario = "\
-horizon = 1 s  step = 0.02 s
+horizon = 1 s; step = 0.02 s
 tracks t = eth_biwi \"t.txt\"
-scene { obstacle box: rect (2, 0) .. (4, 1)  wall (5.05, 0) -- (5.05, 1) }
+scene { obstacle box: rect (2, 0) .. (4, 1); wall (5.05, 0) -- (5.05, 1) }
 kind adult: sfm preset helbing2000 { radius = uniform(0.25 m, 0.3 m) }
 agents all: adult from t at 0 s
 ";
@@ -218,7 +218,7 @@ agents all: adult from t at 0 s
 fn a_recorded_instant_is_usable_although_somebody_was_recorded_in_an_obstacle() {
     let Some(data) = recordings() else { return };
     let scenario = "\
-horizon = 0.4 s  step = 0.02 s
+horizon = 0.4 s; step = 0.02 s
 tracks hotel = eth_biwi \"seq_hotel/obsmat.txt\"
 scene { import \"hotel-obstacles.geojson\" where source == \"map.png\" }
 kind adult: sfm preset helbing2000 { noise = 0.08 m/s }
@@ -239,11 +239,11 @@ agents all: adult from hotel at 533.59 s
 #[test]
 fn bodies_that_are_made_smaller_are_named_with_what_they_overlap() {
     let scenario = "\
-horizon = 1 s  step = 0.02 s
-scene { wall south: (0, 0) -- (9, 0)  wall (0, 3) -- (9, 3) }
+horizon = 1 s; step = 0.02 s
+scene { wall south: (0, 0) -- (9, 0); wall (0, 3) -- (9, 3) }
 kind adult: sfm preset helbing2000 { radius = 0.3 m }
 agent near: adult { at = (1, 0.2) }
-agents two[2]: adult { at = near near within 1 m  radius = 0.1 m }
+agents two[2]: adult { at = near near within 1 m; radius = 0.1 m }
 agent left: adult { at = (5, 1.5) }
 agent right: adult { at = (5.45, 1.5) }
 ";
@@ -268,7 +268,7 @@ fn walls_of_imports_that_nearly_meet_are_told_and_joined() {
     let walls = "LINESTRING (0 0, 9 0)\nLINESTRING (9.004 0.003, 9 5)\nLINESTRING (1 0.02, 8 0.02)\nLINESTRING (4 5, 4 0.01)\n";
     let scenario = |how: &str| {
         format!(
-            "horizon = 1 s  step = 0.02 s\nscene {{\n  wall own: (0, 9) -- (9, 9)\n  import \"w.wkt\"{how}\n  wall other: (0, 10) -- (9, 10)\n}}\n\
+            "horizon = 1 s; step = 0.02 s\nscene {{\n  wall own: (0, 9) -- (9, 9)\n  import \"w.wkt\"{how}\n  wall other: (0, 10) -- (9, 10)\n}}\n\
              kind adult: sfm preset helbing2000\nagent me: adult {{ at = (2, 2) }}\n"
         )
     };
@@ -297,7 +297,7 @@ fn walls_of_imports_that_nearly_meet_are_told_and_joined() {
         ("{ snap = 0 m }", "error[E0405]: `snap` must be positive and at most 1 m (got 0 m)"),
         ("{ snap = 2 }", "error[E0303]"),
         ("{ snip = 5 cm }", "error[E0207]: unknown field `snip`"),
-        ("{ snap = 5 cm  snap = 6 cm }", "error[E0202]: `snap` is set twice"),
+        ("{ snap = 5 cm; snap = 6 cm }", "error[E0202]: `snap` is set twice"),
     ] {
         place.write("a.scn", scenario(how).as_bytes());
         let found = place.call(&["show", "a.scn"]);

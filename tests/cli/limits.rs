@@ -60,7 +60,7 @@ fn a_picture_of_a_million_agents_is_refused() {
     let crowd = "scene { region hall: rect (0, 0) .. (900, 900) }\nagents crowd[200000]: adult { at = uniform in hall }\n";
     let place = Place::new(&[(
         "a.scn",
-        &format!("horizon = 1 s step = 0.02 s\nkind adult: sfm preset smc1\n{crowd}"),
+        &format!("horizon = 1 s; step = 0.02 s\nkind adult: sfm preset smc1\n{crowd}"),
     )]);
     let said = place.call(&["show", "a.scn", "--format", "svg"]);
     assert_eq!(said.code, Some(2));

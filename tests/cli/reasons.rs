@@ -170,8 +170,8 @@ fn a_point_of_a_sweep_is_repeated_alone() {
 #[test]
 fn copies_of_processes_that_decided_are_named() {
     let model = "scenario \"Lamps\"\nhorizon = 9 steps\n\
-        process s[3] { var up = true  when up -> 1/10: up = false | 9/10: { } }\n\
-        process t { var n: 0 .. 3 = 0  when n < 3 -> n = n + 1 }\n";
+        process s[3] { var up = true; when up -> 1/10: up = false | 9/10: { } }\n\
+        process t { var n: 0 .. 3 = 0; when n < 3 -> n = n + 1 }\n";
     for (formula, shows) in [
         ("G (forall a in s: (a.up | t.n == 3))", "fails"),
         ("forall a in s: G<=#9 a.up", "fails"),
@@ -189,10 +189,10 @@ fn copies_of_processes_that_decided_are_named() {
 
 /// Both people fly apart after the first step, in which the left side was true.
 const WILD: &str = "scenario \"Wild\"\nhorizon = 10 s\nstep = 0.1 s\n\
-    scene { region hall: rect (-50, -50) .. (50, 50)  region exit: rect (18, 0) .. (20, 4) }\n\
-    kind adult: sfm preset helbing2000 { radius = 0.25 m  speed = 1.3 m/s  A = 1e9 N }\n\
-    agent user: adult { at = (1, 1)  route = exit }\n\
-    agent other: adult { at = (2.2, 1)  route = (0, 1) }\n";
+    scene { region hall: rect (-50, -50) .. (50, 50); region exit: rect (18, 0) .. (20, 4) }\n\
+    kind adult: sfm preset helbing2000 { radius = 0.25 m; speed = 1.3 m/s; A = 1e9 N }\n\
+    agent user: adult { at = (1, 1); route = exit }\n\
+    agent other: adult { at = (2.2, 1); route = (0, 1) }\n";
 
 /// The warnings of an implication with this left side: `unresolved` of so many trials are, and nothing else comes of them.
 fn warnings_of(model: &str, left: &str, unresolved: u64) -> String {
@@ -210,7 +210,7 @@ fn warnings_of(model: &str, left: &str, unresolved: u64) -> String {
 fn what_a_trial_saw_before_it_went_astray_it_saw() {
     // Whoever starts near is thrown; a left side that looks ahead is open there.
     let some = WILD
-        .replace("at = (2.2, 1)  route = (0, 1)", "at = uniform in rect (2, 1) .. (4, 1.1)  route = (40, 1)");
+        .replace("at = (2.2, 1); route = (0, 1)", "at = uniform in rect (2, 1) .. (4, 1.1); route = (40, 1)");
     for (left, idle) in [
         ("distance(user, other) < 1.2 m", false),
         ("user in exit", true),
@@ -234,8 +234,8 @@ fn trials_that_all_went_astray_say_nothing_of_cases() {
 /// The first arrives after some seconds, and nobody before.
 const LATE: &str = "scenario \"Late\"\nhorizon = 12 s\nstep = 0.1 s\n\
     scene { region west: rect (0, 0) .. (1, 4) }\n\
-    kind adult: sfm preset helbing2000 { radius = 0.25 m  speed = 1.3 m/s }\n\
-    source entrance: adult { at = uniform in rect (4, 1) .. (5, 3)  every = 3 s  route = west then leave }\n";
+    kind adult: sfm preset helbing2000 { radius = 0.25 m; speed = 1.3 m/s }\n\
+    source entrance: adult { at = uniform in rect (4, 1) .. (5, 3); every = 3 s; route = west then leave }\n";
 
 /// A mean over nobody does no harm where nobody looks at it: the reason is that of the state in which it did, and of the
 /// number that was looked at.

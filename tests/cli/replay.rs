@@ -68,7 +68,7 @@ fn what_does_not_fit_is_refused() {
     let here = ["--replay", "here"];
     let named =
         format!("{PAIR}agent friend: adult from here at 0 s id 2\n").replace("except 1", "except 1, 2");
-    let robot = format!("{PAIR}agent robot: adult {{ at = (0, 9)  route = (9, 9) }}\n");
+    let robot = format!("{PAIR}agent robot: adult {{ at = (0, 9); route = (9, 9) }}\n");
     let nobody = PAIR
         .replace("agent user", "agents user")
         .replace(" id 1", " group of 1")

@@ -71,7 +71,7 @@ fn the_replay_of_a_witness_shows_what_it_names() {
 #[test]
 fn an_addition_changes_nobody_elses_draws() {
     let added = format!("{SMALL}agent late: adult {{ at = (20, 20) }}\n");
-    let moved = SMALL.replace("stop }", "heading 90 deg  stop }");
+    let moved = SMALL.replace("stop }", "heading 90 deg; stop }");
     let place = Place::new(&[("a.scn", SMALL), ("b.scn", &added), ("c.scn", &moved)]);
     let words = ["--trials", "20", "--until", "0"];
     let plain = rows(&place, "a.scn", &words);
@@ -91,7 +91,7 @@ fn an_addition_changes_nobody_elses_draws() {
 fn one_more_member_changes_nobody_elses_draws() {
     let text = "horizon = 6 s\nstep = 0.02 s\nparam n = 3\n\
         kind adult: sfm preset helbing2000 { radius = uniform(0.2 m, 0.3 m) }\n\
-        behaviour phone { state a { after exponential(1 s) -> b } state b { speed = uniform(0.5 m/s, 1 m/s) } }\n\
+        behaviour phone { state a { after exponential(1 s) -> b }; state b { speed = uniform(0.5 m/s, 1 m/s) } }\n\
         agents wide[n]: adult with phone { at = uniform in rect (0, 0) .. (900, 900) }\n\
         group pair[n]: adult { at = uniform in rect (0, 2000) .. (900, 2900) }\n\
         process coin[n] { var x: 0 .. 1000 = 0\n when true -> 1/2: x = x | 1/2: x = x + 1 }\n";
@@ -125,7 +125,7 @@ fn one_more_member_changes_nobody_elses_draws() {
 fn comparisons_use_common_random_numbers() {
     let scenario = SMALL
         .replace("param density", "param push = 2000 N\nparam density")
-        .replace("noise = 0.05 m/s", "noise = 0.05 m/s  A = push");
+        .replace("noise = 0.05 m/s", "noise = 0.05 m/s; A = push");
     let query = "compare P(F<=3 s contact(user)) under push = 2000 N with push = 2050 N\n";
     let place = Place::new(&[("a.scn", &scenario), ("a.bltl", query)]);
     let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "400"];
@@ -214,12 +214,12 @@ fn people_who_come_in_have_rows_while_they_are_there_and_states_have_columns() {
 #[test]
 fn an_agent_that_has_left_keeps_its_rows_without_numbers() {
     let scenario = "horizon = 6 s\nstep = 0.1 s\n\
-        process coin { var n: 0 .. 100 = 0  when n < 100 -> n = n + 1 }\n\
-        kind adult: sfm preset helbing2000 { noise = 0 m/s  speed = 1 m/s }\n\
+        process coin { var n: 0 .. 100 = 0; when n < 100 -> n = n + 1 }\n\
+        kind adult: sfm preset helbing2000 { noise = 0 m/s; speed = 1 m/s }\n\
         behaviour phone { state idle { after 9 s -> idle } }\n\
-        agent gone: adult with phone { at = (0, 0)  route = (3, 0) then leave }\n\
+        agent gone: adult with phone { at = (0, 0); route = (3, 0) then leave }\n\
         agent stays: adult { at = (0, 5) }\n\
-        source doors: adult { at = (0, 10)  every = 2 s  limit = 1  route = (1.5, 10) }\n";
+        source doors: adult { at = (0, 10); every = 2 s; limit = 1; route = (1.5, 10) }\n";
     let place = Place::new(&[("a.scn", scenario)]);
     let rows = rows(&place, "a.scn", &[]);
     let of = |agent: &str| -> Vec<&Value> { rows.iter().filter(|row| row["agent"] == agent).collect() };
@@ -255,7 +255,7 @@ fn show_prints_conditions_and_processes_as_written() {
     for line in [
         "  param outage = 0.004 in 0 .. 1\n",
         "  let drop = if(robot in glare, 3 * outage, outage)\n",
-        "  when !works -> 1/75: works = true | 74/75: { }\n",
+        "  when !works -> 1/75: works = true | 74/75: {}\n",
         "      with wary(1.5 m) (its gap)\n",
         "        walking: when distance(self, robot) < gap -> 0.7: waiting | 0.3: passing\n",
         "        seeing: when !sensor.works -> blind\n",
@@ -279,8 +279,8 @@ const DOOR: &str = "horizon = 12 s
 step = 0.05 s
 scene { region hall: rect (0, 0) .. (5, 5) }
 kind adult: sfm preset helbing2000 { noise = 0.05 m/s }
-agent me: adult { at = (9, 2)  route = (20, 2) }
-source door: adult { at = uniform in hall  every = exponential(5 s)  route = (20, 2) }
+agent me: adult { at = (9, 2); route = (20, 2) }
+source door: adult { at = uniform in hall; every = exponential(5 s); route = (20, 2) }
 ";
 
 #[test]
@@ -322,7 +322,7 @@ estimate P(late) by fixed(trials = 12)
 #[test]
 fn who_has_nowhere_to_go_feels_the_same_all_around() {
     let scenario = "horizon = 2 s\nstep = 0.01 s\n\
-kind p: sfm preset helbing2000 { A = 33.6 N  B = 1.65 m  lambda = 0.12  noise = 0 m/s  radius = 0.25 m  hold = 0 m/s }\n\
+kind p: sfm preset helbing2000 { A = 33.6 N; B = 1.65 m; lambda = 0.12; noise = 0 m/s; radius = 0.25 m; hold = 0 m/s }\n\
 agent west: p { at = (0, 0) }\nagent east: p { at = (1, 0) }\n\
 agent south: p { at = (99, 0) }\nagent north: p { at = (99, 1) }\n";
     let place = Place::new(&[("a.scn", scenario)]);
@@ -340,8 +340,8 @@ agent south: p { at = (99, 0) }\nagent north: p { at = (99, 1) }\n";
 
 /// The rate is wrong at 5 s.
 const LATE: &str = "scenario \"late\"\nhorizon = 20 s\n\
-process q { var n: 0 .. 9 = 0  var z: real = 1  when n < 9 after 5 s -> n = n + 1 }\n\
-process r { var x: 0 .. 1 = 0  when x == 0 & q.n == 1 at -1 /s * q.z -> x = 1 }\n";
+process q { var n: 0 .. 9 = 0; var z: real = 1; when n < 9 after 5 s -> n = n + 1 }\n\
+process r { var x: 0 .. 1 = 0; when x == 0 & q.n == 1 at -1 /s * q.z -> x = 1 }\n";
 
 #[test]
 fn what_is_wrong_later_than_is_asked_for_is_not_told() {
@@ -358,8 +358,8 @@ fn what_is_wrong_later_than_is_asked_for_is_not_told() {
 #[test]
 fn jumps_without_end_between_two_steps_are_told_by_their_process() {
     let model = "scenario \"fast\"\nhorizon = 1 s\nstep = 0.1 s\n\
-process blinker { var on = true  when on at 1e9 /s -> on = false  when !on at 1e9 /s -> on = true }\n\
-process slow { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1 }\n";
+process blinker { var on = true; when on at 1e9 /s -> on = false; when !on at 1e9 /s -> on = true }\n\
+process slow { var n: 0 .. 5 = 0; when n < 5 at 1 /s -> n = n + 1 }\n";
     let place = Place::new(&[
         ("a.scn", model),
         ("a.bltl", "estimate P(F<=0.5 s (slow.n == 1)) by fixed(trials = 1)\n"),
@@ -400,9 +400,9 @@ fn show_tells_of_behaviours_and_sources() {
 #[test]
 fn a_jam_is_told_of_who_jumps_then() {
     let model = "scenario \"fast\"\nhorizon = 1 s\nstep = 0.1 s\n\
-process late { var on = false  when !on after 0.35 s -> on = true }\n\
-process early { var n = true  when n & !late.on at 3e6 /s -> n = false  when !n & !late.on at 3e6 /s -> n = true }\n\
-process blinker { var b = true  when b & late.on at 1e9 /s -> b = false  when !b & late.on at 1e9 /s -> b = true }\n";
+process late { var on = false; when !on after 0.35 s -> on = true }\n\
+process early { var n = true; when n & !late.on at 3e6 /s -> n = false; when !n & !late.on at 3e6 /s -> n = true }\n\
+process blinker { var b = true; when b & late.on at 1e9 /s -> b = false; when !b & late.on at 1e9 /s -> b = true }\n";
     let said = Place::new(&[("a.scn", model)]).call(&["simulate", "a.scn"]).err;
     assert!(said.contains("at 0.4 s: more than 1048576 jumps") && said.contains("of `blinker`"), "{said}");
 }
@@ -410,7 +410,7 @@ process blinker { var b = true  when b & late.on at 1e9 /s -> b = false  when !b
 /// Three agents that go the same way.
 const CROWD: &str = "horizon = 1 s\nstep = 0.1 s\n
     kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
-    agents crowd[3]: adult { at = uniform in rect (0, 0) .. (5, 5)  route = (20, 0) }";
+    agents crowd[3]: adult { at = uniform in rect (0, 0) .. (5, 5); route = (20, 0) }";
 
 #[test]
 fn traces_are_read_again_to_the_last_digit() {
@@ -526,10 +526,10 @@ fn pedpy_reads_what_is_written_for_it() {
         return;
     };
     let scenario = "scenario \"a walk in cm, framerate: 3\"\nhorizon = 2 s\nstep = 0.05 s\nscene {
-        wall (-1, -1) -- (9, -1) -- (9, 6) -- (-1, 6) -- (-1, -1)  obstacle desk: rect (6, 2) .. (7, 3)  wall (3, 6) -- (3, 5) }
+        wall (-1, -1) -- (9, -1) -- (9, 6) -- (-1, 6) -- (-1, -1); obstacle desk: rect (6, 2) .. (7, 3); wall (3, 6) -- (3, 5) }
         kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
-        agent cm: adult { at = (1, 1)  route = (8, 1) }
-        agents framerate[4]: adult { at = uniform in rect (0, 0) .. (5, 4)  route = (8, 5) }";
+        agent cm: adult { at = (1, 1); route = (8, 1) }
+        agents framerate[4]: adult { at = uniform in rect (0, 0) .. (5, 4); route = (8, 5) }";
     let place = Place::new(&[("a.scn", scenario)]);
     let table = rows(&place, "a.scn", &["--every", "2"]);
     let mut names: Vec<&str> = Vec::new();

@@ -15,8 +15,8 @@ scene {
 }
 kind operator: stepped { }
 kind adult: sfm preset helbing2000 { }
-agent worker: operator { at = uniform in shelf  route = desk -> wait 1 s -> shelf }
-agent visitor: adult { at = (0, 8)  route = door -> (3, 6) }
+agent worker: operator { at = uniform in shelf; route = desk -> wait 1 s -> shelf }
+agent visitor: adult { at = (0, 8); route = door -> (3, 6) }
 agent guard: adult { at = (9, 9) }
 ";
 

@@ -10,9 +10,9 @@ scene {
   region exit: rect (3, 0) .. (20, 4)
 }
 kind person: sfm preset helbing2000 { speed = 1 m/s }
-agent me: person { at = (1, 2) velocity = (1, 0) m/s route = exit }
-agent you: person { at = (6, 1) velocity = (0, 0) m/s route = room }
-agents crowd[1]: person { at = (9, 1) velocity = (0, 0) m/s }
+agent me: person { at = (1, 2); velocity = (1, 0) m/s; route = exit }
+agent you: person { at = (6, 1); velocity = (0, 0) m/s; route = room }
+agents crowd[1]: person { at = (9, 1); velocity = (0, 0) m/s }
 process lamp { choose
   var on = false
   var n: 0 .. 5 = 0
@@ -264,10 +264,10 @@ fn lowest(scenario: &str, metric: &str) -> String {
 }
 
 const STEPS: &str = "scenario \"Steps\"\nhorizon = 20 steps
-process n { var n: 0 .. 9 = 0  when n < 9 -> n = n + 1 }\n";
+process n { var n: 0 .. 9 = 0; when n < 9 -> n = n + 1 }\n";
 const JUMPS: &str = "scenario \"Jumps\"\nhorizon = 6 s
-process p { var s: 0 .. 3 = 0  when s == 0 after 2 s -> s = 1  when s == 1 after 0 s -> s = 0 }
-process q { var n: 0 .. 3 = 0  when n == 0 after 2 s -> n = 1 }
+process p { var s: 0 .. 3 = 0; when s == 0 after 2 s -> s = 1; when s == 1 after 0 s -> s = 0 }
+process q { var n: 0 .. 3 = 0; when n == 0 after 2 s -> n = 1 }
 process r { var n: 0 .. 3 = 0 }\n";
 
 #[test]
@@ -298,7 +298,7 @@ fn what_lasts_no_time_is_no_reason_and_an_infinity_that_is_no_time_is_none() {
 #[test]
 fn conditions_have_parts_however_many_they_are() {
     const MANY: &str = "scenario \"Many\"\nhorizon = 5 steps
-process m[600] { var k: 0 .. 9 = 0  when k < 9 -> k = k + 1 }\n";
+process m[600] { var k: 0 .. 9 = 0; when k < 9 -> k = k + 1 }\n";
     let chain: Vec<String> = (0..70).map(|k| format!("p.k < {}", 100 + k)).collect();
     let chain = format!("let chain(p) = {} & p.k > 8\n", chain.join(" & "));
     let queries = "check P(forall a in m: F<=2 steps (a.k < 9 | a.k > 7)) >= 0.5
@@ -317,7 +317,7 @@ check P(F<=2 steps (m[600].k > 3 & m[1].k < 9)) >= 0.5\ncheck P(F<=2 steps chain
 fn who_is_called_like_a_name_within_is_not_taken_for_it() {
     let model = PEOPLE.replace(
         "agents crowd[1]",
-        "agent a: person { at = (15, 3) velocity = (0, 0) m/s }\nagents crowd[1]",
+        "agent a: person { at = (15, 3); velocity = (0, 0) m/s }\nagents crowd[1]",
     );
     let properties = "let has(p) = exists a in crowd: distance(a, p) < 1 cm
 check P(G<=1 s (forall a in others(me): x(position(a)) < 14 m | has(a))) >= 0.5\n";
@@ -376,7 +376,7 @@ fn round(length: f64) -> f64 {
 /// A time that is compared with the present one is none that decided.
 #[test]
 fn a_route_is_done_or_not() {
-    let scenario = "horizon = 6 s\nstep = 0.1 s\nkind p: sfm preset smc1 { noise = 0 m/s  speed = 1 m/s }\n\
+    let scenario = "horizon = 6 s\nstep = 0.1 s\nkind p: sfm preset smc1 { noise = 0 m/s; speed = 1 m/s }\n\
         agent a: p { at = (1, 1); route = (3, 1) }\n";
     let place = Place::new(&[
         ("a.scn", scenario),

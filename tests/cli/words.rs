@@ -88,7 +88,7 @@ fn a_name_that_is_not_utf8_is_named() {
 #[test]
 fn a_power_follows_its_exponent() {
     let scenario = "horizon = 6 steps\nparam b = 0.5\n\
-        process p { var n: 0 .. 9 = 0  let h = b ^ n  let g = 2 ^ -n  when n < 9 -> n = n + 1 }\n";
+        process p { var n: 0 .. 9 = 0; let h = b ^ n; let g = 2 ^ -n; when n < 9 -> n = n + 1 }\n";
     let properties = "property same = G[0, 6] (abs(p.h - exp(p.n * ln(b))) < 1e-12 & p.h == p.g)\n\
         property last = F[6, 6] (p.h == 1/64)\ncheck P(same) >= 0.9\ncheck P(last) >= 0.9\n";
     let place = crate::program::Place::new(&[("a.scn", scenario), ("a.bltl", properties)]);

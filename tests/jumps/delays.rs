@@ -24,8 +24,8 @@ process thirds {
   when k == 2 after 2 s / 3 -> k = 3
   when k == 3 after 1 s     -> k = 4
 }
-process door  { var s: 0 .. 2 = 0  when job.k >= 1 & s == 0 after 2 s -> s = 2 }
-process timer { var s: 0 .. 2 = 0  when job.k >= 1 & s == 0 after 0.5 s -> s = 1  when s == 1 after 1.5 s -> s = 2 }
+process door  { var s: 0 .. 2 = 0; when job.k >= 1 & s == 0 after 2 s -> s = 2 }
+process timer { var s: 0 .. 2 = 0; when job.k >= 1 & s == 0 after 0.5 s -> s = 1; when s == 1 after 1.5 s -> s = 2 }
 ";
 
 #[test]
@@ -66,9 +66,9 @@ fn what_is_asked_moves_no_jump() {
 
 #[test]
 fn a_process_with_delays_moves_no_jump_of_others() {
-    let rates = "horizon = 200 s\nprocess a { var n: 0 .. 9 = 0  when n < 9 at 0.7 /s -> n = n + 1  when n > 0 at 1 /s -> n = n - 1 }\n";
+    let rates = "horizon = 200 s\nprocess a { var n: 0 .. 9 = 0; when n < 9 at 0.7 /s -> n = n + 1; when n > 0 at 1 /s -> n = n - 1 }\n";
     let more = format!(
-        "{rates}process b {{ var on = false  when !on after 50 s -> on = true  when on after 1 s / 7 -> on = false }}\n"
+        "{rates}process b {{ var on = false; when !on after 50 s -> on = true; when on after 1 s / 7 -> on = false }}\n"
     );
     let of = |text: &str| {
         let study = compiled(text, "").unwrap_or_else(|error| panic!("{error}"));
@@ -90,9 +90,9 @@ fn a_process_with_delays_moves_no_jump_of_others() {
 #[test]
 fn brief_states_count_however_late_they_come() {
     let model = "horizon = 31536000 s
-process a { var k: 0 .. 2 = 0  when k == 0 at 0.000001 /s -> k = 1  when k == 1 at 1000000 /s -> k = 2 }
-process c { var k: 0 .. 2 = 0  when k == 0 after 1000000 s -> k = 1  when k == 1 after 0.00000003 s -> k = 2 }
-process b { var n: 0 .. 1 = 0  when n == 0 after 1 s -> n = 1 }
+process a { var k: 0 .. 2 = 0; when k == 0 at 0.000001 /s -> k = 1; when k == 1 at 1000000 /s -> k = 2 }
+process c { var k: 0 .. 2 = 0; when k == 0 after 1000000 s -> k = 1; when k == 1 after 0.00000003 s -> k = 2 }
+process b { var n: 0 .. 1 = 0; when n == 0 after 1 s -> n = 1 }
 ";
     assert!(count(model, "F (a.k == 1)", 1000) >= 990);
     assert_eq!(count(model, "F (c.k == 1)", 10), 10);
@@ -103,7 +103,7 @@ process b { var n: 0 .. 1 = 0  when n == 0 after 1 s -> n = 1 }
 fn what_comes_at_the_horizon_comes() {
     for last in ["1.07", "8.3", "1.1", "16.1", "2.14"] {
         let model = format!(
-            "horizon = {last} s\nprocess p {{ var n: 0 .. 3 = 0  when n == 0 after {last} s -> n = 1 }}\n"
+            "horizon = {last} s\nprocess p {{ var n: 0 .. 3 = 0; when n == 0 after {last} s -> n = 1 }}\n"
         );
         for formula in [
             format!("F<={last} s (p.n == 1)"),
@@ -118,8 +118,8 @@ fn what_comes_at_the_horizon_comes() {
 #[test]
 fn what_comes_at_one_time_comes_in_the_order_in_which_it_is_written() {
     let model = "horizon = 1001 s
-process b { var k: 0 .. 9 = 0  when k < 9 after 0.001 s -> k = k + 1  when k == 9 after 0.001 s -> k = 0 }
-process a { var m: 0 .. 10 = 10  when m == 10 after 1000 s -> m = b.k }
+process b { var k: 0 .. 9 = 0; when k < 9 after 0.001 s -> k = k + 1; when k == 9 after 0.001 s -> k = 0 }
+process a { var m: 0 .. 10 = 10; when m == 10 after 1000 s -> m = b.k }
 ";
     assert_eq!(count(model, "F<=1000.5 s (a.m == 0)", 1), 1);
 }
@@ -129,16 +129,16 @@ process a { var m: 0 .. 10 = 10  when m == 10 after 1000 s -> m = b.k }
 #[test]
 fn what_begins_by_chance_keeps_its_order_too() {
     let model = "horizon = 20 s
-process job    { var k: 0 .. 1 = 0  when k == 0 at 1 /s -> k = 1 }
-process ninths { var n: 0 .. 9 = 0  when job.k == 1 & n < 9 after 1 s / 9 -> n = n + 1 }
-process tenths { var n: 0 .. 10 = 0  when job.k == 1 & n < 10 after 0.1 s -> n = n + 1 }
+process job    { var k: 0 .. 1 = 0; when k == 0 at 1 /s -> k = 1 }
+process ninths { var n: 0 .. 9 = 0; when job.k == 1 & n < 9 after 1 s / 9 -> n = n + 1 }
+process tenths { var n: 0 .. 10 = 0; when job.k == 1 & n < 10 after 0.1 s -> n = n + 1 }
 process door {
   var s: 0 .. 1 = 0
   var nine: 0 .. 9 = 0
   var ten: 0 .. 10 = 0
   when job.k == 1 & s == 0 after 1 s -> { s = 1; nine = ninths.n; ten = tenths.n }
 }
-process late { var n: 0 .. 14 = 0  when job.k == 1 & n < 14 after 1 s / 14 -> n = n + 1 }
+process late { var n: 0 .. 14 = 0; when job.k == 1 & n < 14 after 1 s / 14 -> n = n + 1 }
 ";
     for (formula, truth) in [
         ("G<=15 s (door.s == 1 => door.nine == 9 & door.ten == 10)", true),
@@ -163,7 +163,7 @@ process job {
   when k == 1 after 0.000000001 s   -> k = 2
   when k == 2 after 2 s             -> k = 3
 }
-process late { var k: 0 .. 2 = 0  when k == 0 after 31000000 s -> k = 1  when k == 1 after 0.000000001 s -> k = 2 }
+process late { var k: 0 .. 2 = 0; when k == 0 after 31000000 s -> k = 1; when k == 1 after 0.000000001 s -> k = 2 }
 ";
     for (formula, truth) in [
         ("G<=31000000 s (job.k == 2 => F<=2 s (job.k == 3))", true),
@@ -182,13 +182,13 @@ process late { var k: 0 .. 2 = 0  when k == 0 after 31000000 s -> k = 1  when k 
 #[test]
 fn drawn_delays_meet_bounds_of_just_their_length() {
     let model = "horizon = 86400 s
-process tenths { var k: 0 .. 1 = 0  when k == 0 after uniform_int(3, 3) * 0.1 s -> k = 1 }
-process thirds { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after uniform_int(7, 7) * (1 s / 3) -> k = 2 }
-process cut    { var k: 0 .. 1 = 0  when k == 0 after uniform_int(1, 9) * 0.1 s in 0.7 s .. 0.75 s -> k = 1 }
-process long   { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after choice(9000.1 s, 9000.1 s) -> k = 2 }
-process mixed  { var k: 0 .. 1 = 0  when k == 0 after 0.1 s * choice(3, pi / 3) -> k = 1 }
-process still  { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after normal(9000.1 s, 0 s) -> k = 2 }
-process triple { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after 2 * choice(1.1, 1.1) * 1.5 s -> k = 2 }
+process tenths { var k: 0 .. 1 = 0; when k == 0 after uniform_int(3, 3) * 0.1 s -> k = 1 }
+process thirds { var k: 0 .. 2 = 0; when k == 0 at 0.001 /s -> k = 1; when k == 1 after uniform_int(7, 7) * (1 s / 3) -> k = 2 }
+process cut    { var k: 0 .. 1 = 0; when k == 0 after uniform_int(1, 9) * 0.1 s in 0.7 s .. 0.75 s -> k = 1 }
+process long   { var k: 0 .. 2 = 0; when k == 0 at 0.001 /s -> k = 1; when k == 1 after choice(9000.1 s, 9000.1 s) -> k = 2 }
+process mixed  { var k: 0 .. 1 = 0; when k == 0 after 0.1 s * choice(3, pi / 3) -> k = 1 }
+process still  { var k: 0 .. 2 = 0; when k == 0 at 0.001 /s -> k = 1; when k == 1 after normal(9000.1 s, 0 s) -> k = 2 }
+process triple { var k: 0 .. 2 = 0; when k == 0 at 0.001 /s -> k = 1; when k == 1 after 2 * choice(1.1, 1.1) * 1.5 s -> k = 2 }
 process digits {
   var k: 0 .. 3 = 0
   when k == 0 at 0.001 /s                 -> k = 1
@@ -211,7 +211,7 @@ process digits {
         assert_eq!(count(model, formula, 300), 300, "{formula}");
     }
     // Steps and continuous time agree.
-    let law = "process job { var k: 0 .. 1 = 0  when k == 0 after poisson(4) * 0.1 s -> k = 1 }\n";
+    let law = "process job { var k: 0 .. 1 = 0; when k == 0 after poisson(4) * 0.1 s -> k = 1 }\n";
     for bound in ["0.3 s", "0.6 s", "0.7 s"] {
         let formula = format!("F<={bound} (job.k == 1)");
         let held = ["horizon = 20 s\n", "horizon = 20 s\nstep = 0.1 s\n"]

@@ -112,7 +112,7 @@ fn a_trial_that_is_decided_before_the_error_counts() {
 #[test]
 fn rates_that_read_people_are_checked_while_running() {
     let scenario = "horizon = 5 s\nstep = 0.1 s\nkind adult: sfm preset helbing2000 { noise = 0 m/s }\n\
-        agent user: adult { at = (0, 0)  velocity = (1, 0) m/s  speed = 1 m/s  route = (20, 0) }\n\
+        agent user: adult { at = (0, 0); velocity = (1, 0) m/s; speed = 1 m/s; route = (20, 0) }\n\
         process alarm { var on = false\n when !on at 1 /s * (1 - travelled(user) / 2 m) -> on = true }";
     let study = compiled(scenario, "estimate P(F (alarm.on & travelled(user) > 2.5 m)) within 0.1").unwrap();
     let Some(Failure::Model(flaw)) = answered(&study, 0, 2).failure else { panic!() };

@@ -74,7 +74,7 @@ fn a_count_over_time_is_no_number() {
 #[test]
 fn a_count_of_implications_of_one_state_is_a_number_of_it() {
     let sensors = "horizon = 20 steps\n\
-        process sensor[3] { var a: bool = false var b: bool = true  when !a -> 1/2: a = true | 1/2: b = false }";
+        process sensor[3] { var a: bool = false; var b: bool = true; when !a -> 1/2: a = true | 1/2: b = false }";
     let count = "count(s in sensor: s.a => s.b)";
     let queries = [
         (format!("G<=1 ({count} + 1 == 4)"), 10),

@@ -163,7 +163,7 @@ fn chosen(program: &Program, names: &[String]) -> Result<Vec<usize>, Diagnostic>
     let walks = |k: &usize| agents[*k].route.goals().next().is_some() && !program.arrivals.comes(*k);
     let all: Vec<usize> = (0..agents.len()).filter(walks).collect();
     if all.is_empty() {
-        let hint = "write a route: `agent worker: operator { at = rack  route = station }`";
+        let hint = "write a route: `agent worker: operator { at = rack; route = station }`";
         return Err(complaint::argument("no agent has a route from the start of a trial on", hint));
     }
     if names.is_empty() {

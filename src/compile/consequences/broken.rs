@@ -150,16 +150,16 @@ pub(super) struct Broken<'i> {
 impl<'i> Broken<'i> {
     pub(super) fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
         let files = input.properties.iter();
-        let lost = input.scenario.lost.iter().chain(files.clone().flat_map(|file| &file.lost));
-        let cut = input.scenario.cut.iter().chain(files.clone().flat_map(|file| &file.cut));
-        let mut doubts: Vec<Span> =
-            files.flat_map(|file| &file.doubts).chain(&input.scenario.doubts).copied().collect();
+        let broken = input.scenario.broken.iter().chain(files.flat_map(|file| &file.broken));
+        let swallowed = broken.clone().flat_map(|item| &item.words).map(String::as_str).collect();
+        let mut doubts: Vec<Span> = broken.map(|item| item.span).collect();
         doubts.sort_unstable();
+        let lost = doubts.iter();
         let mut broken = Self {
             sources: input.sources,
             lost: Parts::of(lost.clone().copied()),
-            skipped: Parts::of(lost.clone().chain(cut.clone()).copied()),
-            swallowed: BTreeSet::new(),
+            skipped: Parts::of(lost.clone().copied()),
+            swallowed,
             suspects: BTreeSet::new(),
             grown: BTreeSet::new(),
             set: BTreeSet::new(),
@@ -189,11 +189,8 @@ impl<'i> Broken<'i> {
                 texts.extend(lines(input.sources, place.span));
             }
         }
-        for span in lost.clone() {
-            broken.swallowed.extend(words(word(input.sources, *span).unwrap_or_default()));
-        }
         // Of texts that start alike the longest says all: each of thousands of errors on a line has that line.
-        texts.extend(lost.chain(cut));
+        texts.extend(lost);
         texts.sort_by_key(|span| (span.source, span.start, Reverse(span.end)));
         texts.dedup_by_key(|span| (span.source, span.start));
         for span in texts {
@@ -225,6 +222,8 @@ impl<'i> Broken<'i> {
     /// A text that was not read, or not to its end.
     fn add(&mut self, span: Span, text: &'i str) {
         let source = span.source;
+        // Something else may stand in the place of the first word.
+        let text = text.trim_start_matches(|c: char| !starts_name(c));
         let (first, rest) = leading_word(text);
         let (second, _) = leading_word(rest);
         self.moves |= ["moves", "heading", "route", "stop"].iter().any(|word| has_word(text, word));
@@ -249,8 +248,8 @@ impl<'i> Broken<'i> {
         } else if rest.trim_start().starts_with('=') {
             self.set.insert(first);
         } else if !NAMELESS.contains(&first) {
-            // The first word is misspelt, and a name follows.
-            self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
+            // The first word is misspelt, and a name follows, or it is missing.
+            self.suspects.extend([first, second].into_iter().filter(|name| !name.is_empty()));
         }
     }
 

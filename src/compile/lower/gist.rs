@@ -92,21 +92,16 @@ impl Gist<'_, '_> {
         }
         match self.elaborator.find(name, locals.scope) {
             Some((scope, Meaning::Constant(value) | Meaning::Param { value, .. })) => {
-                self.of_declared(value, &Locals::of(scope))
+                self.of(value, &Locals::of(scope))
             }
             Some((scope, Meaning::Let(decl))) if decl.arguments.is_empty() => {
-                self.of_declared(&decl.body, &Locals::of(scope))
+                self.of(&decl.body, &Locals::of(scope))
             }
             None if name == "time" && !self.elaborator.clock.is_jumps() => {
                 Some(self.elaborator.time_dimension())
             }
             _ => None,
         }
-    }
-
-    /// The type of a name; unknown if its declaration was not read to its end, as in `const D = 2 meter`.
-    fn of_declared(&mut self, value: &Expr, locals: &Locals) -> Option<Dimension> {
-        if self.elaborator.is_cut(value.span) { None } else { self.of(value, locals) }
     }
 
     fn of_call(&mut self, name: &str, arguments: &[Expr], locals: &Locals) -> Option<Dimension> {
@@ -126,7 +121,7 @@ impl Gist<'_, '_> {
                     None => inner.bind_unknown(&name.name),
                 }
             }
-            return self.of_declared(&decl.body, &inner);
+            return self.of(&decl.body, &inner);
         }
         let built_in = BuiltIn::find(name).filter(|function| function.takes(arguments.len()))?;
         match built_in.dimension {

@@ -50,7 +50,11 @@ impl Search<'_, '_> {
             ExprKind::Temporal(..) | ExprKind::TemporalPair(..) | ExprKind::Window(..) | ExprKind::At(..) => {
                 true
             }
-            ExprKind::Quantity(_) | ExprKind::Infinity | ExprKind::Bool(_) | ExprKind::Text(_) => false,
+            ExprKind::Quantity(_)
+            | ExprKind::Infinity
+            | ExprKind::Broken
+            | ExprKind::Bool(_)
+            | ExprKind::Text(_) => false,
             ExprKind::Name(name) => self.name(name, names),
             ExprKind::Call { function, arguments } => {
                 let known = self.elaborator.find(&function.name, names.scope).is_some();

@@ -90,6 +90,7 @@ impl Elaborator<'_> {
                 Ok(Typed::Number(Number::literal(quantity.value, &unit)))
             }
             ExprKind::Infinity => Ok(Typed::Infinity),
+            ExprKind::Broken => Err(Reported),
             ExprKind::Bool(value) => Ok(Typed::truth(Bool::Constant(*value))),
             ExprKind::Text(text) => Ok(Typed::Text(text.clone())),
             ExprKind::Name(name) => self.lower_name(name, expr.span, locals),

@@ -47,10 +47,6 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
             Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
-                // A declaration that was not read to its end has an unknown meaning.
-                if self.is_cut(body.span) {
-                    return Some(Err(Reported));
-                }
                 let path = format!("{}.{name}", process.decl.name.name);
                 let frame = self.label((at, copy)).map(|label| Arc::new(Frame::inside(label)));
                 let locals = Locals { process: Some((at, copy)), frame, ..Locals::of(0) };

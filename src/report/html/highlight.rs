@@ -2,15 +2,8 @@
 
 use super::links::Links;
 use crate::report::escape::escape;
+use crate::syntax::keywords::is_marked;
 use std::fmt::Write as _;
-
-/// Words with a meaning of their own in both languages.
-const KEYWORDS: &str = "\
-    E F G P Q R U W X agent agents along as at behaviour bias by cell check choose circle compare confidence \
-    const count estimate except exists false family for forall from group groups heading horizon import in \
-    kind let max mean min moves near obstacle of on param particle paths periodic point polygon preset process \
-    property radius rank rect region route scenario scene source state step sum then to tracks true under \
-    uniform wall when with within";
 
 /// A text as HTML, with the links of the text of that number; longer ones than `most` bytes are cut at the end of a line.
 pub(super) fn highlighted(text: &str, most: usize, (links, number): (&Links, usize)) -> String {
@@ -85,7 +78,7 @@ fn token(text: &str, first: char) -> (usize, Option<&'static str>) {
     }
     if begins_word(first) {
         let length = while_(&|c| c.is_alphanumeric() || c == '_');
-        return (length, KEYWORDS.split(' ').any(|word| *word == text[..length]).then_some("keyword"));
+        return (length, is_marked(&text[..length]).then_some("keyword"));
     }
     (first.len_utf8(), None)
 }
@@ -95,8 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keywords_are_sorted_and_marked_and_nothing_gets_out() {
-        assert!(KEYWORDS.split(' ').is_sorted());
+    fn keywords_are_marked_and_nothing_gets_out() {
         let plain = (&Links::default(), 0);
         let html = highlighted("let a = \"</pre>\" // <b>\nat=1.5", 1000, plain);
         assert_eq!(

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The player of a page.
 const PLAYER: &str = "#player";
-/// What a name follows that is declared in a text of properties.
+/// Words that a name follows whose results a page shows.
 const DECLARES: [&str; 2] = ["property", "let"];
 
 /// Where the names and lines of texts lead.

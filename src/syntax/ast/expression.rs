@@ -177,6 +177,8 @@ pub enum ExprKind {
     Quantity(Quantity),
     /// `∞`
     Infinity,
+    /// A value that could not be read; that was reported.
+    Broken,
     /// `true`, `false`
     Bool(bool),
     /// `"text"` (filters of imports)

@@ -5,6 +5,17 @@ pub mod process;
 pub mod property;
 pub mod scenario;
 
+use crate::syntax::source::Span;
+
+/// An item that could not be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    /// Where.
+    pub span: Span,
+    /// Its words, among them the names that it may declare.
+    pub words: Vec<String>,
+}
+
 pub use expression::{
     Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Moment, Quantifier, Quantity, Temporal, TemporalPair,
     Text, UnaryOp, UnitExpr, UnitFactor,

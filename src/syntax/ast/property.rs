@@ -1,6 +1,6 @@
 //! Property files (`.bltl`).
 
-use super::{Expr, Ident, LetDecl};
+use super::{Broken, Expr, Ident, LetDecl};
 use crate::syntax::source::Span;
 
 /// A whole property file.
@@ -8,13 +8,13 @@ use crate::syntax::source::Span;
 pub struct PropertyFile {
     /// Declarations and queries in order of writing.
     pub items: Vec<PropertyItem>,
-    /// Parts that ended early, since what follows on their line could not be read; that was reported.
-    pub cut: Vec<Span>,
-    /// Parts that could not be read, and heads of those whose values could not; that was reported.
-    pub lost: Vec<Span>,
-    /// What could not be read on its line, each up to where reading surely began again there. Without one, all of a line
-    /// with an error is in doubt.
-    pub doubts: Vec<Span>,
+    /// Items that could not be read, and heads of those whose values could not; that was reported.
+    pub broken: Vec<Broken>,
+    /// Whether something was wrong.
+    pub fails: bool,
+    /// Whether items may stand in the wrong blocks, since braces do not pair up or the text ends in a comment; that was
+    /// reported.
+    pub is_torn: bool,
 }
 
 /// One declaration or query.

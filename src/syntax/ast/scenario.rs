@@ -1,6 +1,6 @@
 //! Scenario files (`.scn`).
 
-use super::{BehaviourDecl, Binding, Expr, Ident, ProcessDecl, SourceDecl, Text};
+use super::{BehaviourDecl, Binding, Broken, Expr, Ident, ProcessDecl, SourceDecl, Text};
 use crate::syntax::source::Span;
 
 /// A whole scenario file.
@@ -8,13 +8,13 @@ use crate::syntax::source::Span;
 pub struct ScenarioFile {
     /// Declarations in order of writing.
     pub items: Vec<Item>,
-    /// Parts that ended early, since what follows on their line could not be read; that was reported.
-    pub cut: Vec<Span>,
-    /// Parts that could not be read, and heads of those whose values could not; that was reported.
-    pub lost: Vec<Span>,
-    /// What could not be read on its line, each up to where reading surely began again there. Without one, all of a line
-    /// with an error is in doubt.
-    pub doubts: Vec<Span>,
+    /// Items that could not be read, and heads of those whose values could not; that was reported.
+    pub broken: Vec<Broken>,
+    /// Whether something was wrong.
+    pub fails: bool,
+    /// Whether items may stand in the wrong blocks, since braces do not pair up or the text ends in a comment; that was
+    /// reported.
+    pub is_torn: bool,
 }
 
 /// One declaration.
@@ -347,7 +347,7 @@ pub struct GroupDecl {
     pub body: Vec<Field>,
 }
 
-/// `moves user for 2 s { heading from -60 deg to 60 deg by 15 deg  stop }`
+/// `moves user for 2 s { heading from -60 deg to 60 deg by 15 deg; stop }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovesDecl {
     /// The agent with the moves, or its declaration.

@@ -22,7 +22,7 @@ impl Builder<'_> {
         let plural = pair.clone().into_inner().next()?.as_rule() == Rule::kw_agents;
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
-        let count = self.size(&mut parts)?;
+        let count = self.size(&mut parts);
         let kind = self.ident(&parts.part(Rule::name)?);
         let (with, recorded) = self.attachments(&mut parts)?;
         Some(AgentsDecl { plural, name, count, kind, with, recorded, body: self.body(parts) })
@@ -32,7 +32,7 @@ impl Builder<'_> {
         let plural = pair.clone().into_inner().next()?.as_rule() == Rule::kw_groups;
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
-        let count = self.size(&mut parts)?;
+        let count = self.size(&mut parts);
         let kind = self.ident(&parts.part(Rule::name)?);
         let particle = parts.part(Rule::particle).map(|particle| self.span(&particle));
         let (with, recorded) = self.attachments(&mut parts)?;
@@ -65,22 +65,16 @@ impl Builder<'_> {
         Some(SourceDecl { name, kind, with, body: self.body(parts), span })
     }
 
-    /// `[k]` behind a name; the outer `None` is a failure, the inner one is no member.
-    #[allow(clippy::option_option, reason = "a failure is not the absence of a member")]
-    pub(super) fn member(&mut self, parts: &mut Parts<'_>) -> Option<Option<Expr>> {
-        match parts.part(Rule::index) {
-            Some(member) => self.expr(Parts::of(member).part(Rule::expr)?).map(Some),
-            None => Some(None),
-        }
+    /// `[k]` behind a name.
+    pub(super) fn member(&mut self, parts: &mut Parts<'_>) -> Option<Expr> {
+        let member = parts.part(Rule::index)?;
+        Some(self.expr(Parts::of(member).part(Rule::expr)?))
     }
 
-    /// `[n]`; the outer `None` is a failure, the inner one is no size.
-    #[allow(clippy::option_option, reason = "a failure is not the absence of a size")]
-    pub(super) fn size(&mut self, parts: &mut Parts<'_>) -> Option<Option<Expr>> {
-        match parts.part(Rule::size) {
-            Some(size) => self.expr(Parts::of(size).part(Rule::expr)?).map(Some),
-            None => Some(None),
-        }
+    /// `[n]`
+    pub(super) fn size(&mut self, parts: &mut Parts<'_>) -> Option<Expr> {
+        let size = parts.part(Rule::size)?;
+        Some(self.expr(Parts::of(size).part(Rule::expr)?))
     }
 
     fn with(&mut self, pair: Pair<'_>) -> Option<Vec<Expr>> {
@@ -91,7 +85,7 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let tracks = self.ident(&parts.part(Rule::name)?);
-        let at = self.expr(parts.part(Rule::arith)?)?;
+        let at = self.expr(parts.part(Rule::arith)?);
         let mut ids = |pair: Option<Pair<'_>>| match pair {
             Some(pair) => Parts::of(pair).map(|whom| self.whom(whom)).collect::<Option<Vec<_>>>(),
             None => Some(Vec::new()),
@@ -104,23 +98,15 @@ impl Builder<'_> {
     fn whom(&mut self, pair: Pair<'_>) -> Option<Whom> {
         let is_group = pair.as_rule() == Rule::group_of;
         let id = if is_group { Parts::of(pair).part(Rule::arith)? } else { pair };
-        Some(Whom { id: self.expr(id)?, is_group })
+        Some(Whom { id: self.expr(id), is_group })
     }
 
     pub(super) fn body(&mut self, mut parts: Parts<'_>) -> Vec<Field> {
-        let Some(fields) = parts.part(Rule::fields) else { return Vec::new() };
-        self.report_faults(&fields);
-        Parts::of(fields)
-            .filter(|part| part.as_rule() == Rule::field)
-            .filter_map(|field| self.field(field))
-            .collect()
+        let Some(block) = parts.part(Rule::block) else { return Vec::new() };
+        self.block(&block, Rule::line_of_fields, &mut Self::field)
     }
 
     pub(super) fn field(&mut self, pair: Pair<'_>) -> Option<Field> {
-        if self.sets_a_unit(&pair) {
-            return None;
-        }
-        let head = self.head(&pair);
         let mut parts = Parts::of(pair);
         let name = match parts.part(Rule::limited) {
             Some(limited) => {
@@ -135,7 +121,7 @@ impl Builder<'_> {
             Rule::arguments => self.value(parts.part(Rule::arguments)?),
             _ => self.value(parts.part(Rule::value)?.into_inner().next()?),
         };
-        Some(Field { name, value: self.missed(value, head)? })
+        Some(Field { name, value: value? })
     }
 
     /// `0.8 m/s^2 along, 1.6 m/s^2 across`
@@ -149,10 +135,10 @@ impl Builder<'_> {
     /// One of the two: a value, or a distribution that is truncated.
     fn side(&mut self, pair: Pair<'_>) -> Option<Value> {
         let mut parts = Parts::of(pair);
-        let law = self.expr(parts.part(Rule::side_arith)?)?;
+        let law = self.expr(parts.part(Rule::side_arith)?);
         let Some(low) = parts.part(Rule::side_arith) else { return Some(Value::Plain(law)) };
-        let low = self.expr(low)?;
-        Some(Value::Truncated { law, low, high: self.expr(parts.part(Rule::side_arith)?)? })
+        let low = self.expr(low);
+        Some(Value::Truncated { law, low, high: self.expr(parts.part(Rule::side_arith)?) })
     }
 
     /// The value of a field, a wait or a delay.
@@ -161,10 +147,10 @@ impl Builder<'_> {
             Rule::uniform_in => Some(Value::UniformIn(self.shape(Parts::of(pair).part(Rule::shape)?)?)),
             Rule::near => {
                 let mut parts = Parts::of(pair);
-                let agent = self.expr(parts.part(Rule::operand_of)?)?;
-                Some(Value::Near { agent, within: self.expr(parts.part(Rule::arith)?)? })
+                let agent = self.expr(parts.part(Rule::operand_of)?);
+                Some(Value::Near { agent, within: self.expr(parts.part(Rule::arith)?) })
             }
-            Rule::route | Rule::move_route => self.route(pair).map(Value::Route),
+            Rule::route => self.route(pair).map(Value::Route),
             Rule::truncated => {
                 let (law, low, high) = self.truncated(pair)?;
                 Some(Value::Truncated { law, low, high })
@@ -185,16 +171,16 @@ impl Builder<'_> {
                 let preset = self.ident(&Parts::of(parts.part(Rule::preset)?).part(Rule::name)?);
                 Some(Value::Force { kind, preset })
             }
-            _ => self.expr(pair).map(Value::Plain),
+            _ => Some(Value::Plain(self.expr(pair))),
         }
     }
 
     /// `law in low .. high`
     pub(super) fn truncated(&mut self, pair: Pair<'_>) -> Option<(Expr, Expr, Expr)> {
         let mut parts = Parts::of(pair);
-        let law = self.expr(parts.part(Rule::arith)?)?;
-        let low = self.expr(parts.part(Rule::arith)?)?;
-        Some((law, low, self.expr(parts.part(Rule::arith)?)?))
+        let law = self.expr(parts.part(Rule::arith)?);
+        let low = self.expr(parts.part(Rule::arith)?);
+        Some((law, low, self.expr(parts.part(Rule::arith)?)))
     }
 
     fn route(&mut self, pair: Pair<'_>) -> Option<Route> {
@@ -214,7 +200,7 @@ impl Builder<'_> {
         Some(if leg.as_rule() == Rule::wait {
             Leg::Wait(Box::new(self.value(Parts::of(leg).next()?)?))
         } else {
-            Leg::Goal(self.expr(leg)?)
+            Leg::Goal(self.expr(leg))
         })
     }
 }

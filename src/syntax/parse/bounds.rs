@@ -2,33 +2,22 @@
 
 use super::builder::Builder;
 use super::code;
-use super::fault::{Fault, quote};
+use super::fault::Fault;
 use super::grammar::{Grammar, Rule};
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::Span;
+use crate::syntax::keywords::{Declares, keyword};
 use pest::Parser;
-use std::collections::BTreeMap;
 
 /// The operators that look ahead.
 pub(super) const OPERATORS: [char; 6] = ['F', 'G', 'X', 'U', 'W', 'R'];
-/// Words that a name follows which may stand in a value.
-const DECLARES: [&str; 6] = ["const", "label", "let", "param", "process", "var"];
-/// Others that a name follows.
-const INTRODUCES: [&str; 12] = [
-    "agent", "agents", "group", "groups", "line", "obstacle", "point", "property", "region", "source",
-    "state", "wall",
-];
-
 impl Builder<'_> {
     /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
     pub(super) fn slip_of_time(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        if !fault.after_value() || self.root != Rule::scenario_file {
+        if !fault.after_value() || self.in_properties {
             return None;
         }
-        // Of thousands of declarations on a line each is looked through by itself.
-        let declaration = &self.text[fault.from..fault.at];
-        let line = declaration.rsplit('\n').next().unwrap_or(declaration);
+        let line = self.text[..fault.at].rsplit('\n').next()?;
         let start = fault.at - line.len();
         let operators = ["<=", "≤", "["].iter().filter_map(|mark| {
             let at = line.rfind(mark)?;
@@ -38,38 +27,33 @@ impl Builder<'_> {
             let alone = !name.ends_with(lexeme::continues_name);
             (alone && is_bound(&line[at..], fault.found)).then_some((start + name.len(), letter))
         });
-        let (at, letter) = operators.max().filter(|(_, letter)| !self.declares(*letter))?;
+        let (at, letter) =
+            operators.max().filter(|(_, letter)| !self.names_a_value(letter.encode_utf8(&mut [0; 4])))?;
         Some(
             Diagnostic::error(
                 code::UNEXPECTED,
-                Span::new(self.source.id, at, at + letter.len_utf8()),
+                self.at(at..at + letter.len_utf8()),
                 format!("the temporal operator `{letter}` is not allowed in a scenario"),
             )
             .hint("move this formula to a property file (`.bltl`)"),
         )
     }
 
-    /// Whether an operator is the name of something else in this text.
-    fn declares(&self, operator: char) -> bool {
-        let names = self.names.get_or_init(|| declared(self.text));
-        names.get(operator.encode_utf8(&mut [0; 4]) as &str).is_some_and(|word| DECLARES.contains(word))
-    }
-
-    /// Whether a word is the name of something in this text.
-    pub(super) fn is_declared(&self, word: &str) -> bool {
-        self.names.get_or_init(|| declared(self.text)).contains_key(word)
+    /// Whether a word is the name of a value in this text.
+    fn names_a_value(&self, word: &str) -> bool {
+        let before = self.declared().get(word).and_then(|before| keyword(before));
+        before.is_some_and(|before| before.declares == Declares::Value)
     }
 
     /// Whether a word is the name of a number in this text.
     pub(super) fn names_a_number(&self, word: &str) -> bool {
-        let names = self.names.get_or_init(|| declared(self.text));
-        matches!(names.get(word), Some(&("const" | "let" | "param")))
+        matches!(self.declared().get(word), Some(&("const" | "let" | "param")))
     }
 
     /// `F<=0 s == 3`: the bound took the name for its unit; and `F<5 s p`.
     pub(super) fn slip_of_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let comparison = matches!(fault.found, "==" | "!=" | "<" | "<=" | ">" | ">=" | "≤" | "≥" | "≠");
-        let (unit_at, word) = lexeme::word_before(self.text, fault.at)?;
+        let (unit_at, word) = lexeme::word_before(&self.text, fault.at)?;
         let place = self.place(fault.at, fault.found);
         if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
             return Some(
@@ -86,21 +70,22 @@ impl Builder<'_> {
         {
             return None;
         }
-        let (number_at, number) = lexeme::word_before(self.text, unit_at)?;
+        let (number_at, number) = lexeme::word_before(&self.text, unit_at)?;
         let before = self.text[..number_at].trim_end();
         let mark = ["<=", "≤"].into_iter().find(|mark| before.ends_with(mark))?;
         if !number.starts_with(|c: char| c.is_ascii_digit()) {
             return None;
         }
-        let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
-        let operator = lexeme::word_before(self.text, before.len() - mark.len()).map_or("", |(_, word)| word);
+        let unit = self.at(unit_at..unit_at + word.len());
+        let operator =
+            lexeme::word_before(&self.text, before.len() - mark.len()).map_or("", |(_, word)| word);
         let formula = format!("({word} {} …)", fault.found);
         let hint = format!("write parentheses: `{operator}{mark}{number}{} {formula}`", self.unit);
         Some(
             Diagnostic::error(
                 code::BOUND_TOOK_NAME,
                 place,
-                format!("expected a formula, found {}", quote(fault.found)),
+                format!("expected a formula, found {}", self.quote(fault.found)),
             )
             .related(unit, "read as the unit of the bound")
             .hint(hint),
@@ -120,26 +105,4 @@ fn is_bound(text: &str, found: &str) -> bool {
         taken.next().is_some_and(|pair| pair.as_span().end() == text.len())
     };
     Grammar::parse(rule, text).is_ok_and(whole)
-}
-
-/// The names that a text declares, each with the word before it; one that may stand in a value, if there are several.
-fn declared(text: &str) -> BTreeMap<&str, &str> {
-    let (mut found, mut before, mut at) = (BTreeMap::new(), "", 0);
-    while at < text.len() {
-        if let Some(length) = lexeme::trivia(&text[at..]) {
-            at += length;
-            continue;
-        }
-        let token = lexeme::first(&text[at..]);
-        if token.starts_with(lexeme::starts_name) {
-            if DECLARES.contains(&before) {
-                found.insert(token, before);
-            } else if INTRODUCES.contains(&before) {
-                found.entry(token).or_insert(before);
-            }
-        }
-        before = token;
-        at += token.len().max(1);
-    }
-    found
 }

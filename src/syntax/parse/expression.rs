@@ -132,8 +132,9 @@ struct Yard {
 
 impl Builder<'_> {
     /// An expression of any of the rules that hold a sequence.
-    pub(super) fn expr(&mut self, pair: Pair<'_>) -> Option<Expr> {
-        self.sequence(pair).map(|built| built.expr)
+    pub(super) fn expr(&mut self, pair: Pair<'_>) -> Expr {
+        let span = self.span(&pair);
+        self.sequence(pair).map_or(Expr { kind: ExprKind::Broken, span }, |built| built.expr)
     }
 
     fn sequence(&mut self, pair: Pair<'_>) -> Option<Built> {
@@ -350,10 +351,8 @@ impl Builder<'_> {
     fn postfix(&mut self, target: Built, pair: Pair<'_>) -> Option<Built> {
         let span = target.expr.span.to(self.span(&pair));
         let is_member = pair.as_rule() == Rule::member;
-        let written = &self.text[target.expr.span.start as usize..target.expr.span.end as usize];
-        // What stands on the next line is another slip.
-        let is_line = !self.text[target.expr.span.end as usize..span.end as usize].contains('\n');
-        if is_member && is_line && written.bytes().all(|byte| byte.is_ascii_digit()) {
+        let written = self.source.slice(target.expr.span);
+        if is_member && written.bytes().all(|byte| byte.is_ascii_digit()) {
             // `5. m/s`
             let place =
                 Span { end: span.end.min(target.expr.span.end + 1), start: target.expr.span.end, ..span };
@@ -382,6 +381,7 @@ impl Builder<'_> {
             Rule::quantity => ExprKind::Quantity(self.quantity(pair)?),
             Rule::steps => ExprKind::Quantity(self.steps(&pair)?),
             Rule::infinity => ExprKind::Infinity,
+            Rule::broken => ExprKind::Broken,
             Rule::text => ExprKind::Text(self.quoted(&pair).value),
             Rule::boolean => ExprKind::Bool(pair.as_str() == "true"),
             Rule::name => ExprKind::Name(pair.as_str().to_owned()),
@@ -396,7 +396,7 @@ impl Builder<'_> {
         let mut parts = Parts::of(pair);
         let mut first = self.sequence(parts.part(Rule::expr)?)?;
         if let Some(moment) = parts.part(Rule::read_at) {
-            first.expr = self.read_at(first.expr, moment)?;
+            first.expr = self.read_at(first.expr, moment);
             first.height += 1;
         }
         if let Some(second) = parts.part(Rule::expr) {

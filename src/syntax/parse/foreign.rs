@@ -6,7 +6,6 @@
 use super::builder::Builder;
 use super::code;
 use super::fault::{Fault, failure};
-use super::grammar::Rule;
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -417,11 +416,12 @@ impl Builder<'_> {
 
     /// The first spelling of a table that a fault lies in, and with which replaced the text reads on.
     fn foreign(&self, fault: &Fault<'_>, rows: &'static [Row]) -> Option<Hit> {
-        let file = if self.root == Rule::property_file { Properties } else { Scenario };
-        let line = self.source.line_start(fault.at as u32) as usize;
-        let from = self.text.floor_char_boundary(fault.at.saturating_sub(BEFORE)).max(line).max(fault.from);
-        let end = self.text.floor_char_boundary(fault.at.saturating_add(REACH));
-        let tokens = Tokens { unit: self.unit, ..Tokens::of(self.text, from, end) };
+        let file = if self.in_properties { Properties } else { Scenario };
+        let text = self.written();
+        let line = text[..fault.at].rfind('\n').map_or(0, |end| end + 1);
+        let from = text.floor_char_boundary(fault.at.saturating_sub(BEFORE)).max(line);
+        let end = text.floor_char_boundary(fault.at.saturating_add(REACH));
+        let tokens = Tokens { unit: self.unit, ..Tokens::of(text, from, end) };
         let behind = tokens.spans.partition_point(|span| span.start <= fault.at);
         let are_operators = rows.len() == OPERATORS.len();
         let rows = || rows.iter().filter(|row| row.0 == Both || row.0 == file);
@@ -435,7 +435,7 @@ impl Builder<'_> {
             let pattern = pieces(row.2);
             let end = tokens.matched(&pattern, at, &mut found)?;
             // A fault lies in what could not be read, or right behind it.
-            let next = tokens.spans.get(end).map_or(self.text.len(), |span| span.start);
+            let next = tokens.spans.get(end).map_or(text.len(), |span| span.start);
             let ours = tokens.filled(row.3, &found, file);
             let bytes = tokens.bytes(&(at..end));
             // Only a prefix, or the first half of a mark, is read as something else.
@@ -454,13 +454,13 @@ impl Builder<'_> {
         if ours.contains('…') || ours.starts_with(' ') {
             return true;
         }
-        let end = self.text.floor_char_boundary(part.end.saturating_add(REACH));
-        let before = format!("{}{ours}", &self.text[fault.from..part.start]);
-        let text = format!("{before}{}", &self.text[part.end..end]);
-        let start = lexeme::all_trivia(&text);
+        let written = self.written();
+        let before = format!("{}{ours}", &written[..part.start]);
+        let text = format!("{before}{}", &written[part.end..]);
         // What a comment leaves is whole: `n % 2)` is none.
         let is_fine = |at: usize| at > before.len() && !ours.starts_with("//");
-        start >= text.len() || failure(fault.rule, &text, start).is_none_or(|(at, _)| is_fine(at))
+        let is_empty = lexeme::all_trivia(&text) == text.len();
+        is_empty || failure(fault.rule, &text).is_none_or(|(at, _)| is_fine(at))
     }
 
     /// The place of a spelling, and how it is quoted: up to its first long hole, and the marks at its end.
@@ -472,15 +472,16 @@ impl Builder<'_> {
         };
         let head = found.holes.iter().find(is_long).map_or(end, |(_, part)| part.start);
         let bytes = tokens.bytes(&(found.here..head));
-        let mut shown: String = self.text[bytes.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
+        let text = tokens.text;
+        let mut shown: String = text[bytes.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
         if shown.ends_with(')') && !shown.contains('(') {
             shown.pop();
         }
         let marks = pattern.iter().rev().take_while(|piece| !piece.starts_with('$')).count();
         if marks > 0 && head < end && !pattern.contains(&"@") {
-            let _ = write!(shown, " … {}", &self.text[tokens.bytes(&(end - marks..end))]);
+            let _ = write!(shown, " … {}", &text[tokens.bytes(&(end - marks..end))]);
         }
-        (Span::new(self.source.id, bytes.start, bytes.end), shown)
+        (self.at(bytes), shown)
     }
 }
 

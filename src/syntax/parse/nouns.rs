@@ -1,100 +1,23 @@
 //! What the rules of the grammar are called for people, and which known word is nearest.
 
 use super::grammar::Rule;
+use crate::syntax::keywords::{self, Place};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
-/// The word of a keyword rule.
+/// The word of a keyword rule: `kw_agent` is the rule of `agent`.
 pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
-    Some(match rule {
-        Rule::kw_across => "across",
-        Rule::kw_after => "after",
-        Rule::kw_agent => "agent",
-        Rule::kw_agents => "agents",
-        Rule::kw_along => "along",
-        Rule::kw_alternatives => "alternatives",
-        Rule::kw_as => "as",
-        Rule::kw_at => "at",
-        Rule::kw_behaviour => "behaviour",
-        Rule::kw_by => "by",
-        Rule::kw_check => "check",
-        Rule::kw_choose => "choose",
-        Rule::kw_circle => "circle",
-        Rule::kw_compare => "compare",
-        Rule::kw_confidence => "confidence",
-        Rule::kw_const => "const",
-        Rule::kw_count => "count",
-        Rule::kw_end => "end",
-        Rule::kw_estimate => "estimate",
-        Rule::kw_except => "except",
-        Rule::kw_exists => "exists",
-        Rule::kw_family => "family",
-        Rule::kw_for => "for",
-        Rule::kw_forall => "forall",
-        Rule::kw_from => "from",
-        Rule::kw_group => "group",
-        Rule::kw_groups => "groups",
-        Rule::kw_heading => "heading",
-        Rule::kw_hole => "hole",
-        Rule::kw_id => "id",
-        Rule::kw_import => "import",
-        Rule::kw_in => "in",
-        Rule::kw_kind => "kind",
-        Rule::kw_label => "label",
-        Rule::kw_leave => "leave",
-        Rule::kw_let => "let",
-        Rule::kw_limit => "limit",
-        Rule::kw_line => "line",
-        Rule::kw_log => "log",
-        Rule::kw_moves => "moves",
-        Rule::kw_near => "near",
-        Rule::kw_obstacle => "obstacle",
-        Rule::kw_of => "of",
-        Rule::kw_on => "on",
-        Rule::kw_param => "param",
-        Rule::kw_particle => "particle",
-        Rule::kw_paths => "paths",
-        Rule::kw_periodic => "periodic",
-        Rule::kw_point => "point",
-        Rule::kw_polygon => "polygon",
-        Rule::kw_preset => "preset",
-        Rule::kw_process => "process",
-        Rule::kw_property => "property",
-        Rule::kw_radius => "radius",
-        Rule::kw_rank => "rank",
-        Rule::kw_rect => "rect",
-        Rule::kw_region => "region",
-        Rule::kw_roadmap => "roadmap",
-        Rule::kw_search => "search",
-        Rule::kw_learned => "learned",
-        Rule::kw_route => "route",
-        Rule::kw_scenario => "scenario",
-        Rule::kw_scene => "scene",
-        Rule::kw_source => "source",
-        Rule::kw_state => "state",
-        Rule::kw_stream => "stream",
-        Rule::kw_stop => "stop",
-        Rule::kw_then => "then",
-        Rule::kw_to => "to",
-        Rule::kw_tracks => "tracks",
-        Rule::kw_under => "under",
-        Rule::kw_uniform => "uniform",
-        Rule::kw_var => "var",
-        Rule::kw_wait => "wait",
-        Rule::kw_walkable => "walkable",
-        Rule::kw_wall => "wall",
-        Rule::kw_when => "when",
-        Rule::kw_where => "where",
-        Rule::kw_with => "with",
-        Rule::kw_within => "within",
-        _ => return None,
-    })
+    static WORDS: OnceLock<BTreeMap<Rule, String>> = OnceLock::new();
+    let words = WORDS.get_or_init(|| {
+        let word = |rule: &Rule| Some((*rule, format!("{rule:?}").strip_prefix("kw_")?.to_owned()));
+        Rule::all_rules().iter().filter_map(word).collect()
+    });
+    words.get(&rule).map(String::as_str)
 }
 
-/// Words that are operators in property files, and no names.
-pub(super) const OPERATORS: [&str; 8] = ["forall", "exists", "F", "G", "X", "U", "W", "R"];
-
-/// Whether a word is a keyword of either language.
+/// Whether a word is a keyword of the grammar.
 pub(super) fn is_keyword(word: &str) -> bool {
-    Rule::all_rules().iter().any(|&rule| keyword(rule) == Some(word))
+    !matches!(word, "horizon" | "step") && keywords::keyword(word).is_some()
 }
 
 /// The word or mark of a rule that is one.
@@ -109,8 +32,6 @@ fn mark(rule: Rule) -> Option<&'static str> {
         Rule::t_rparen => ")",
         Rule::t_lbracket => "[",
         Rule::t_rbracket => "]",
-        Rule::t_lbrace => "{",
-        Rule::t_rbrace => "}",
         Rule::t_comma => ",",
         Rule::t_colon => ":",
         Rule::t_dots => "..",
@@ -149,41 +70,28 @@ pub(super) fn is_operator(rule: Rule) -> bool {
     )
 }
 
+/// The part whose items a rule takes.
+fn place(rule: Rule) -> Option<Place> {
+    Some(match rule {
+        Rule::item => Place::Scenario,
+        Rule::property_item => Place::Properties,
+        Rule::scene_item => Place::Scene,
+        Rule::process_item => Place::Process,
+        Rule::behaviour_item => Place::Behaviour,
+        Rule::state_item | Rule::transition => Place::State,
+        Rule::move_option => Place::Moves,
+        _ => return None,
+    })
+}
+
 /// The words that a rule of several alternatives may start with.
-pub(super) fn words(rule: Rule) -> &'static [&'static str] {
-    match rule {
-        Rule::item | Rule::item_end => &[
-            "scenario",
-            "horizon",
-            "step",
-            "const",
-            "param",
-            "let",
-            "tracks",
-            "scene",
-            "kind",
-            "agent",
-            "agents",
-            "group",
-            "groups",
-            "moves",
-            "paths",
-            "process",
-            "behaviour",
-            "source",
-        ],
-        Rule::property_item | Rule::property_item_end => {
-            &["property", "let", "const", "family", "check", "estimate", "compare", "rank"]
-        }
-        Rule::scene_item | Rule::scene_item_end => {
-            &["wall", "obstacle", "region", "point", "line", "import", "periodic"]
-        }
-        Rule::process_item | Rule::process_item_end => &["var", "let", "label", "when", "choose"],
-        Rule::behaviour_item | Rule::behaviour_item_end => &["state", "on", "let"],
-        Rule::state_item | Rule::state_item_end | Rule::transition => &["after", "when"],
-        Rule::move_option | Rule::move_end => &["heading", "route", "stop"],
+pub(super) fn words(rule: Rule) -> Vec<&'static str> {
+    if let Some(place) = place(rule) {
+        return keywords::beginning(place).collect();
+    }
+    let words: &[_] = match rule {
         Rule::clause => &["within", "confidence", "by", "under"],
-        Rule::body | Rule::recorded => &["from"],
+        Rule::recorded => &["from"],
         Rule::with => &["with"],
         Rule::preset => &["preset"],
         Rule::particle | Rule::walkable => &["as"],
@@ -199,7 +107,8 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::measure_range => &["in"],
         Rule::shape => &["circle", "rect", "polygon"],
         _ => &[],
-    }
+    };
+    words.to_vec()
 }
 
 /// The name of a rule in messages; `rank` orders the nouns of one message, lower first.
@@ -235,8 +144,7 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::force
         | Rule::learned
         | Rule::leg
-        | Rule::route
-        | Rule::move_route => (0, "a number, a name or `(`".to_owned()),
+        | Rule::route => (0, "a number, a name or `(`".to_owned()),
         Rule::place | Rule::outline | Rule::paren => (0, "a point".to_owned()),
         Rule::set => (0, "a set".to_owned()),
         Rule::bound => (2, "a bound".to_owned()),
@@ -246,7 +154,7 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         Rule::relation => (0, "`>=`, `>`, `<=` or `<`".to_owned()),
         Rule::unit | Rule::unit_factor | Rule::point_unit => (2, "a unit".to_owned()),
         Rule::item | Rule::property_item => (6, "a declaration".to_owned()),
-        Rule::item_end | Rule::property_item_end => (6, "the next declaration".to_owned()),
+        Rule::EOI => (6, "the end of the line".to_owned()),
         Rule::scene_item
         | Rule::process_item
         | Rule::behaviour_item
@@ -256,17 +164,15 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
             (6, list(&words))
         }
         Rule::field | Rule::limited => (6, "`name = value`".to_owned()),
-        Rule::alternatives => (6, "`roadmap alternatives`".to_owned()),
-        Rule::scene_item_end
-        | Rule::process_item_end
-        | Rule::behaviour_item_end
-        | Rule::state_item_end
-        | Rule::field_end
-        | Rule::move_end => (6, "the next line of the block".to_owned()),
+        Rule::alternatives | Rule::line_of_paths => (6, "`roadmap alternatives`".to_owned()),
         Rule::clause => (7, "`within`, `confidence`, `by` or `under`".to_owned()),
-        Rule::fields | Rule::no_body => (4, "`{`".to_owned()),
-        Rule::update | Rule::updates | Rule::branch | Rule::branches => (0, "an update".to_owned()),
-        Rule::choice | Rule::choices => (0, "a name".to_owned()),
+        Rule::block => (4, "`{`".to_owned()),
+        Rule::update | Rule::update_list | Rule::updates | Rule::branch | Rule::branches => {
+            (0, "an update".to_owned())
+        }
+        Rule::choice | Rule::choices | Rule::line_of_answers | Rule::line_of_choices => {
+            (0, "a name".to_owned())
+        }
         Rule::recorded
         | Rule::with
         | Rule::preset

@@ -5,39 +5,31 @@ use super::code;
 use super::grammar::Rule;
 use super::quantity;
 use crate::syntax::ast::{
-    BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, ExprKind, OnDecl, ProcessDecl,
-    ProcessItem, StateDecl, Timing, Transition, Update, Value, VarDecl,
+    BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, Expr, ExprKind, OnDecl,
+    ProcessDecl, ProcessItem, StateDecl, Timing, Transition, Update, Value, VarDecl,
 };
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Builder<'_> {
     pub(super) fn process(&mut self, pair: Pair<'_>) -> Option<ProcessDecl> {
-        self.report_faults(&pair);
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
-        let count = self.size(&mut parts)?;
-        let items = parts
-            .filter(|part| part.as_rule() == Rule::process_item)
-            .filter_map(|part| {
-                let part = part.into_inner().next()?;
-                let head = self.head(&part);
-                let item = self.process_item(part);
-                self.missed(item, head)
-            })
-            .collect();
+        let count = self.size(&mut parts);
+        let items = self.block(&parts.part(Rule::block)?, Rule::line_of_process, &mut Self::process_item);
         Some(ProcessDecl { name, count, items, span })
     }
 
     fn process_item(&mut self, pair: Pair<'_>) -> Option<ProcessItem> {
+        let pair = pair.into_inner().next()?;
         match pair.as_rule() {
             Rule::var => self.var(pair).map(ProcessItem::Var),
             Rule::let_decl => self.let_decl(pair).map(ProcessItem::Let),
             Rule::label => {
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::name)?);
-                Some(ProcessItem::Label { name, value: self.expr(parts.part(Rule::expr)?)? })
+                Some(ProcessItem::Label { name, value: self.expr(parts.part(Rule::expr)?) })
             }
             Rule::command => self.command(pair).map(ProcessItem::Command),
             _ => Some(ProcessItem::Choose(self.span(&pair))),
@@ -51,8 +43,8 @@ impl Builder<'_> {
         let domain = if let Some(range) = parts.part(Rule::var_range) {
             let place = range.as_span();
             let mut ends = Parts::of(range);
-            let low = self.expr(ends.part(Rule::arith)?)?;
-            let high = self.expr(ends.part(Rule::arith)?)?;
+            let low = self.expr(ends.part(Rule::arith)?);
+            let high = self.expr(ends.part(Rule::arith)?);
             // `0 .. 3 m/s = …`: a name that is set is no unit.
             if let ExprKind::Binary(BinaryOp::Over | BinaryOp::Times, _, below) = &high.kind
                 && matches!(&below.kind, ExprKind::Name(name) if quantity::UNITS.contains(&name.as_str()))
@@ -65,15 +57,15 @@ impl Builder<'_> {
         } else {
             parts.part(Rule::name).map(|domain| Domain::Named(self.ident(&domain)))
         };
-        Some(VarDecl { name, domain, initial: self.expr(parts.part(Rule::tight)?)? })
+        Some(VarDecl { name, domain, initial: self.expr(parts.part(Rule::tight)?) })
     }
 
     fn command(&mut self, pair: Pair<'_>) -> Option<Command> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let guard = self.expr(parts.part(Rule::expr)?)?;
+        let guard = self.expr(parts.part(Rule::expr)?);
         let timing = match parts.rule()? {
-            Rule::rate => Some(Timing::Rate(self.expr(Parts::of(parts.next()?).part(Rule::arith)?)?)),
+            Rule::rate => Some(Timing::Rate(self.expr(Parts::of(parts.next()?).part(Rule::arith)?))),
             Rule::delay => Some(Timing::Delay(self.delay(parts.next()?)?)),
             _ => None,
         };
@@ -81,14 +73,12 @@ impl Builder<'_> {
         for branch in Parts::of(parts.part(Rule::branches)?) {
             let span = self.span(&branch);
             let mut parts = Parts::of(branch);
-            let weight = self.weight(&mut parts)?;
-            let updates = Parts::of(parts.part(Rule::updates)?)
-                .map(|update| {
-                    let mut parts = Parts::of(update);
-                    let target = self.ident(&parts.part(Rule::name)?);
-                    Some(Update { target, value: self.expr(parts.part(Rule::tight)?)? })
-                })
-                .collect::<Option<_>>()?;
+            let weight = self.weight(&mut parts);
+            let mut updates = Parts::of(parts.part(Rule::updates)?);
+            let updates = match updates.part(Rule::block) {
+                Some(block) => self.block(&block, Rule::line_of_updates, &mut Self::update_list).concat(),
+                None => vec![self.update(updates.part(Rule::update)?)?],
+            };
             branches.push(Branch { weight, updates, span });
         }
         let weighted: Vec<_> = branches.iter().map(|branch| (branch.weight.is_some(), branch.span)).collect();
@@ -96,12 +86,19 @@ impl Builder<'_> {
         Some(Command { guard, timing, branches, span })
     }
 
-    #[allow(clippy::option_option, reason = "a failure is not the absence of a weight")]
-    fn weight(&mut self, parts: &mut Parts<'_>) -> Option<Option<crate::syntax::ast::Expr>> {
-        match parts.part(Rule::weight) {
-            Some(weight) => self.expr(Parts::of(weight).part(Rule::arith)?).map(Some),
-            None => Some(None),
-        }
+    fn update_list(&mut self, pair: Pair<'_>) -> Option<Vec<Update>> {
+        Parts::of(pair).map(|update| self.update(update)).collect()
+    }
+
+    fn update(&mut self, pair: Pair<'_>) -> Option<Update> {
+        let mut parts = Parts::of(pair);
+        let target = self.ident(&parts.part(Rule::name)?);
+        Some(Update { target, value: self.expr(parts.part(Rule::tight)?) })
+    }
+
+    fn weight(&mut self, parts: &mut Parts<'_>) -> Option<Expr> {
+        let weight = parts.part(Rule::weight)?;
+        Some(self.expr(Parts::of(weight).part(Rule::arith)?))
     }
 
     fn delay(&mut self, pair: Pair<'_>) -> Option<Box<Value>> {
@@ -122,73 +119,66 @@ impl Builder<'_> {
     }
 
     pub(super) fn behaviour(&mut self, pair: Pair<'_>) -> Option<BehaviourDecl> {
-        self.report_faults(&pair);
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
         let arguments =
             parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
-        let items = parts
-            .filter(|part| part.as_rule() == Rule::behaviour_item)
-            .filter_map(|part| {
-                let part = part.into_inner().next()?;
-                let head = self.head(&part);
-                let item = self.behaviour_item(part);
-                self.missed(item, head)
-            })
-            .collect();
+        let items = self.block(&parts.part(Rule::block)?, Rule::line_of_behaviour, &mut Self::behaviour_item);
         Some(BehaviourDecl { name, arguments, items, span })
     }
 
     fn behaviour_item(&mut self, pair: Pair<'_>) -> Option<BehaviourItem> {
+        let pair = pair.into_inner().next()?;
         let span = self.span(&pair);
         match pair.as_rule() {
             Rule::state => self.state(pair).map(BehaviourItem::State),
             Rule::on => {
                 let mut parts = Parts::of(pair);
                 let event = self.ident(&parts.part(Rule::name)?);
-                let choices = self.choices(parts.part(Rule::choices)?)?;
+                let choices =
+                    self.only(&parts.part(Rule::block)?, Rule::line_of_answers, &mut Self::answers)?;
                 Some(BehaviourItem::On(OnDecl { event, choices, span }))
             }
             _ => self.let_decl(pair).map(BehaviourItem::Let),
         }
     }
 
+    /// `choose { p: follow | 1 - p: ignore }`, or the choices alone.
+    fn answers(&mut self, pair: Pair<'_>) -> Option<Vec<Choice>> {
+        let mut parts = Parts::of(pair);
+        match parts.part(Rule::block) {
+            Some(block) => self.only(&block, Rule::line_of_choices, &mut Self::choices),
+            None => self.choices(parts.part(Rule::choices)?),
+        }
+    }
+
     fn state(&mut self, pair: Pair<'_>) -> Option<StateDecl> {
-        self.report_faults(&pair);
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
         let (mut fields, mut transitions) = (Vec::new(), Vec::new());
-        for part in parts.filter(|part| part.as_rule() == Rule::state_item) {
-            let Some(part) = part.into_inner().next() else { continue };
+        self.block(&parts.part(Rule::block)?, Rule::line_of_state, &mut |builder, part| {
+            let part = part.into_inner().next()?;
             if part.as_rule() == Rule::transition {
-                transitions.extend(self.transition(part));
-                continue;
+                transitions.push(builder.transition(part)?);
+                return Some(());
             }
             if !transitions.is_empty() {
-                let place = self.span(&part);
-                self.say(
-                    Diagnostic::error(
-                        code::FIELD_PLACE,
-                        place,
-                        "fields of a state must come before its transitions",
-                    )
-                    .hint("move it before the transitions"),
-                );
+                let title = "fields of a state must come before its transitions";
+                let error = Diagnostic::error(code::FIELD_PLACE, builder.span(&part), title);
+                builder.say(error.hint("move it before the transitions"));
             }
-            fields.extend(self.field(part));
-        }
+            fields.push(builder.field(part)?);
+            Some(())
+        });
         Some(StateDecl { name, fields, transitions, span })
     }
 
     fn transition(&mut self, pair: Pair<'_>) -> Option<Transition> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let guard = match parts.part(Rule::expr) {
-            Some(guard) => Some(self.expr(guard)?),
-            None => None,
-        };
+        let guard = parts.part(Rule::expr).map(|guard| self.expr(guard));
         let after = match parts.part(Rule::delay) {
             Some(delay) => Some(self.delay(delay)?),
             None => None,
@@ -200,7 +190,7 @@ impl Builder<'_> {
         let mut choices = Vec::new();
         for choice in Parts::of(pair) {
             let mut parts = Parts::of(choice);
-            let weight = self.weight(&mut parts)?;
+            let weight = self.weight(&mut parts);
             choices.push(Choice { weight, target: self.ident(&parts.part(Rule::name)?) });
         }
         let weighted: Vec<_> =

@@ -11,26 +11,14 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Builder<'_> {
-    pub(super) fn property_file(&mut self, file: Pair<'_>) -> PropertyFile {
-        self.report_faults(&file);
-        let items = Parts::of(file)
-            .filter(|part| part.as_rule() == Rule::property_item)
-            .filter_map(|part| {
-                let part = part.into_inner().next()?;
-                let head = self.head(&part);
-                let item = self.property_item(part);
-                self.missed(item, head)
-            })
-            .collect();
-        PropertyFile {
-            items,
-            cut: std::mem::take(&mut self.cut),
-            lost: std::mem::take(&mut self.lost),
-            doubts: self.doubts(),
-        }
+    pub(super) fn property_file(&mut self) -> PropertyFile {
+        let layout = self.layout;
+        let items = self.items(&layout.items, Rule::line_of_properties, &mut Self::property_item);
+        PropertyFile { items, broken: std::mem::take(&mut self.broken), ..PropertyFile::default() }
     }
 
     fn property_item(&mut self, pair: Pair<'_>) -> Option<PropertyItem> {
+        let pair = pair.into_inner().next()?;
         let span = self.span(&pair);
         let rule = pair.as_rule();
         if rule == Rule::let_decl {
@@ -40,14 +28,14 @@ impl Builder<'_> {
         match rule {
             Rule::const_decl => {
                 let name = self.ident(&parts.part(Rule::name)?);
-                Some(PropertyItem::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
+                Some(PropertyItem::Const { name, value: self.expr(parts.part(Rule::expr)?) })
             }
             Rule::property => {
                 let name = self.ident(&parts.part(Rule::name)?);
-                Some(PropertyItem::Property { name, formula: self.expr(parts.part(Rule::expr)?)? })
+                Some(PropertyItem::Property { name, formula: self.expr(parts.part(Rule::expr)?) })
             }
             Rule::family => {
-                Some(PropertyItem::Family { confidence: self.expr(parts.part(Rule::arith)?)?, span })
+                Some(PropertyItem::Family { confidence: self.expr(parts.part(Rule::arith)?), span })
             }
             _ => self.query(rule, parts, span).map(PropertyItem::Query),
         }
@@ -58,7 +46,7 @@ impl Builder<'_> {
             Rule::check => QueryKind::Check {
                 measure: self.measure(parts.part(Rule::measure)?)?,
                 relation: relation(&parts.part(Rule::relation)?)?,
-                threshold: self.expr(parts.part(Rule::arith)?)?,
+                threshold: self.expr(parts.part(Rule::arith)?),
             },
             Rule::estimate => {
                 let mut measures = Vec::new();
@@ -84,10 +72,7 @@ impl Builder<'_> {
     /// What a ranking chooses from.
     fn options(&mut self, parts: &mut Parts<'_>) -> Option<Ranked> {
         if let Some(what) = parts.part(Rule::name) {
-            return Some(Ranked::Moves {
-                what: self.ident(&what),
-                agent: self.expr(parts.part(Rule::set)?)?,
-            });
+            return Some(Ranked::Moves { what: self.ident(&what), agent: self.expr(parts.part(Rule::set)?) });
         }
         let mut list = Vec::new();
         while let Some(ranked) = parts.part(Rule::ranked) {
@@ -106,7 +91,7 @@ impl Builder<'_> {
         let rule = pair.as_rule();
         let mut list = Vec::new();
         for part in Parts::of(pair) {
-            list.push(self.expr(part)?);
+            list.push(self.expr(part));
         }
         if rule == Rule::value_list {
             return Some(Values::List(list));
@@ -159,20 +144,20 @@ impl Builder<'_> {
             _ => {
                 let mut levels = Vec::new();
                 while let Some(level) = parts.part(Rule::arith) {
-                    levels.push(MeasureKind::Quantile(self.expr(level)?));
+                    levels.push(MeasureKind::Quantile(self.expr(level)));
                 }
                 levels
             }
         };
-        let mut body = self.expr(parts.part(Rule::expr)?)?;
+        let mut body = self.expr(parts.part(Rule::expr)?);
         if let Some(moment) = parts.part(Rule::moment).or_else(|| parts.part(Rule::read_at)) {
-            body = self.read_at(body, moment)?;
+            body = self.read_at(body, moment);
         }
         let range = match parts.part(Rule::measure_range) {
             Some(range) => {
                 let mut ends = Parts::of(range);
-                let low = self.expr(ends.part(Rule::arith)?)?;
-                Some((low, self.expr(ends.part(Rule::arith)?)?))
+                let low = self.expr(ends.part(Rule::arith)?);
+                Some((low, self.expr(ends.part(Rule::arith)?)))
             }
             None => None,
         };
@@ -181,13 +166,13 @@ impl Builder<'_> {
     }
 
     /// `… at end`, `… at 5 s`
-    pub(super) fn read_at(&mut self, read: Expr, moment: Pair<'_>) -> Option<Expr> {
+    pub(super) fn read_at(&mut self, read: Expr, moment: Pair<'_>) -> Expr {
         let span = read.span.to(self.span(&moment));
         let moment = match moment.into_inner().find(|part| part.as_rule() == Rule::arith) {
-            Some(time) => Moment::Time(Box::new(self.expr(time)?)),
+            Some(time) => Moment::Time(Box::new(self.expr(time))),
             None => Moment::End,
         };
-        Some(Expr { kind: ExprKind::At(Box::new(read), moment), span })
+        Expr { kind: ExprKind::At(Box::new(read), moment), span }
     }
 
     fn bindings(&mut self, pair: Pair<'_>) -> Option<Vec<Binding>> {
@@ -197,7 +182,7 @@ impl Builder<'_> {
     pub(super) fn binding(&mut self, pair: Pair<'_>) -> Option<Binding> {
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::ident)?);
-        Some(Binding { name, value: self.expr(parts.part(Rule::tight)?)? })
+        Some(Binding { name, value: self.expr(parts.part(Rule::tight)?) })
     }
 
     fn clauses(&mut self, parts: Parts<'_>) -> Option<Clauses> {
@@ -208,10 +193,8 @@ impl Builder<'_> {
             let rule = clause.as_rule();
             let mut parts = Parts::of(clause);
             let twice = match rule {
-                Rule::within => clauses.within.replace(self.expr(parts.part(Rule::arith)?)?).is_some(),
-                Rule::confidence => {
-                    clauses.confidence.replace(self.expr(parts.part(Rule::arith)?)?).is_some()
-                }
+                Rule::within => clauses.within.replace(self.expr(parts.part(Rule::arith)?)).is_some(),
+                Rule::confidence => clauses.confidence.replace(self.expr(parts.part(Rule::arith)?)).is_some(),
                 Rule::method => {
                     let name = self.ident(&parts.part(Rule::name)?);
                     let arguments = parts.map(|binding| self.binding(binding)).collect::<Option<_>>()?;

@@ -146,7 +146,7 @@ impl Builder<'_> {
             self.say(Diagnostic::error(code::NUMBER, span, "the power of the unit is too large"));
             return None;
         };
-        let span = Span::new(self.source.id, start, start + name.len());
+        let span = self.at(start..start + name.len());
         Some(UnitFactor { name: Ident { name: name.to_owned(), span }, power: sign * i32::from(power) })
     }
 }
@@ -175,9 +175,9 @@ mod tests {
             assert_eq!(count(&said), wanted, "{text}\n{said:?}");
         }
         let scenario = |text: &str| count(&parse_scenario(&source(text)).1);
-        assert_eq!(scenario("horizon = 9 steps\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 0);
+        assert_eq!(scenario("horizon = 9 steps\nprocess s { var m = 3; when m > 2 -> m = 2 }"), 0);
         // A member is no unit.
-        assert_eq!(scenario("horizon = 9 s\nprocess s { var m = 3 when m > 2 -> m = 2 }"), 0);
+        assert_eq!(scenario("horizon = 9 s\nprocess s { var m = 3; when m > 2 -> m = 2 }"), 0);
         assert_eq!(scenario("horizon = 9 s\nstep = 1 s\nparam s = 3"), 1);
     }
 }

@@ -3,15 +3,12 @@
 
 use super::builder::Builder;
 use super::code;
-use super::fault::{Fault, failure, starts_declaration};
+use super::fault::{Fault, failure};
 use super::grammar::Rule;
-use super::{lexeme, nesting, nouns, quantity};
+use super::{layout, lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::Span;
 use std::ops::Range;
 
-/// Bytes behind a fault that are looked at.
-const BEHIND: usize = 1 << 10;
 /// Most brackets that are closed, and most words that are spelt anew, for one fault.
 const MOST_BRACKETS: usize = 4;
 const MOST_WORDS: usize = 4;
@@ -23,26 +20,31 @@ const OPENERS: [&str; 9] =
 const SPOKEN: [(&str, &str); 3] = [("rectangle", "rect"), ("disc", "circle"), ("disk", "circle")];
 
 impl Builder<'_> {
+    /// Whether a bracket of the item at hand has no partner.
+    pub(super) fn is_unmatched(&self, at: usize) -> bool {
+        self.item.is_some_and(|item| item.unmatched.contains(&(self.base + at)))
+    }
+
     /// `at = (1, 2 velocity = …`, `speed = normal(1 m/s, 0.1 m/s }`: a bracket that nothing closes, and with which closed
     /// the text goes on.
     pub(super) fn slip_of_bracket(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let mut open = nesting::open_brackets(self.text, fault.from, fault.at);
-        let inner = open.iter().rposition(|(_, bracket)| *bracket == '{').map_or(0, |brace| brace + 1);
-        open.drain(..inner);
+        let open = nesting::open_brackets(&self.text, fault.at);
         let &(at, bracket) = open.last()?;
         // `(2 m =`: the sign stands where the bracket was closed; of a name that is set nobody knows that it is a unit.
-        let sets = self.text[fault.at + fault.found.len()..].trim_start().starts_with('=');
+        let sets = self.behind(fault).starts_with('=');
         let is_replaced = quantity::UNITS.contains(&fault.found) && sets;
-        if is_replaced || self.is_closed_behind(fault.at, bracket) {
+        if is_replaced || !self.is_unmatched(at) {
             return None;
         }
         let mut closed = String::new();
         for count in 1..=open.len().min(MOST_BRACKETS) {
             closed.push(nesting::partner(open[open.len() - count].1));
-            if self.read_again(fault, fault.at..fault.at, &closed) == Again::No {
+            // What follows may be an item of its own.
+            let ends = || failure(fault.rule, &format!("{}{closed}", &self.text[..fault.at])).is_none();
+            if self.read_again(fault, fault.at..fault.at, &closed) == Again::No && !ends() {
                 continue;
             }
-            let mark = |at: usize| Span::new(self.source.id, at, at + 1);
+            let mark = |at: usize| self.at(at..at + 1);
             let close = nesting::partner(bracket);
             let error = Diagnostic::error(code::UNCLOSED, mark(at), format!("`{bracket}` is not closed"))
                 .related(self.place(fault.at, fault.found), format!("expected `{close}` before this text"));
@@ -52,70 +54,54 @@ impl Builder<'_> {
         None
     }
 
-    /// Whether a bracket that is open at a byte is closed behind it, in the same declaration, or farther behind than
-    /// anybody looks.
-    pub(super) fn is_closed_behind(&self, at: usize, bracket: char) -> bool {
-        let end = self.text.floor_char_boundary(at.saturating_add(BEHIND));
-        let (behind, is_whole) = own_part(&self.text[at..end]);
-        match nesting::first_closing(behind) {
-            Some(closing) => closing == nesting::partner(bracket),
-            None => !is_whole && end < self.text.len(),
-        }
+    /// What follows the text found, less blanks.
+    pub(super) fn behind(&self, fault: &Fault<'_>) -> &str {
+        self.text.get(fault.at + fault.found.len()..).unwrap_or_default().trim_start()
     }
 
-    /// Whether what was found is a keyword, which stands in no bracket, and nothing closes the one that is open.
-    pub(super) fn ends_bracket(&self, fault: &Fault<'_>, bracket: char) -> bool {
+    /// Whether what was found is a keyword, which stands in no bracket.
+    pub(super) fn ends_bracket(&self, fault: &Fault<'_>) -> bool {
         // Some start a value, others are functions, too.
-        let rest = self.text[fault.at + fault.found.len()..].trim_start();
-        let is_value = matches!(fault.found, "forall" | "exists") || rest.starts_with('(');
-        nouns::is_keyword(fault.found) && !is_value && !self.is_closed_behind(fault.at, bracket)
+        let is_value = matches!(fault.found, "forall" | "exists") || self.behind(fault).starts_with('(');
+        nouns::is_keyword(fault.found) && !is_value
     }
 
     /// `obstacle pillar: circel (4, 4) radius 1 m`: a keyword that reads as a name until something follows that follows
     /// no name.
     pub(super) fn slip_of_opener(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let mut words = Vec::new();
-        let mut at = fault.from.max(self.source.line_start(fault.at as u32) as usize);
-        while at < fault.at {
-            if let Some(length) = lexeme::trivia(&self.text[at..]) {
-                at += length;
-                continue;
-            }
-            let token = lexeme::first(&self.text[at..]);
-            words.push((at, token));
-            at += token.len().max(1);
-        }
-        let near = words.into_iter().rev().filter_map(|(at, word)| Some((at, word, opener(word)?)));
+        let line = self.text[..fault.at].rfind('\n').map_or(0, |end| end + 1);
+        let words = layout::tokens(&self.text[line..fault.at]);
+        let near =
+            words.iter().rev().filter_map(|word| Some((line + word.at, word.text, opener(word.text)?)));
         let (at, word, meant) = near.take(MOST_WORDS).find(|(at, word, meant)| {
             match self.read_again(fault, *at..at + word.len(), meant) {
                 Again::Whole => true,
-                Again::Further => !self.is_declared(word),
+                Again::Further => !self.declared().contains_key(word),
                 Again::No => false,
             }
         })?;
         let title = format!("expected `{meant}`, found `{word}`");
-        let error = Diagnostic::error(code::UNEXPECTED, self.place(at, word), title);
+        let error = Diagnostic::error(code::UNEXPECTED, self.at(at..at + word.len()), title);
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
 
     /// `(1 2)`, `region hall rect …`: the only word or mark with which, put before what was found on the same line, the
     /// text goes on.
     pub(super) fn missing(&self, fault: &Fault<'_>) -> Option<&'static str> {
-        let before = &self.text[fault.from..fault.at];
-        let lies_behind = before.trim_end_matches([' ', '\t']);
-        if fault.found.is_empty() || lies_behind.is_empty() || lies_behind.ends_with('\n') {
+        let lies_behind = self.text[..fault.at].trim_end_matches(' ');
+        if fault.at >= self.text.len() || lies_behind.is_empty() || lies_behind.ends_with('\n') {
             return None;
         }
         // Between two values `in` is an operator as any other, after a field an arrow is one of many ways to go on, and a
         // bracket that is opened is closed somewhere.
-        let ends = [Rule::field_end, Rule::state_item_end].iter().any(|rule| fault.expected.contains(rule));
+        let ends = [Rule::line_of_fields, Rule::line_of_state].contains(&fault.rule);
         let wanted = fault.expected.iter().filter(|&&rule| match rule {
             Rule::kw_in => !fault.after_value(),
             Rule::t_arrow => !ends,
             _ => true,
         });
         let mut wanted: Vec<_> = wanted.filter_map(|&rule| nouns::token(rule)).collect();
-        wanted.retain(|token| !matches!(*token, "(" | "[" | "{"));
+        wanted.retain(|token| !matches!(*token, "(" | "["));
         wanted.sort_unstable();
         wanted.dedup();
         let again = |token: &&str| self.read_again(fault, fault.at..fault.at, &format!("{token} "));
@@ -125,39 +111,17 @@ impl Builder<'_> {
 
     /// How far the text goes on once a part of it before the fault is another.
     fn read_again(&self, fault: &Fault<'_>, part: Range<usize>, by: &str) -> Again {
-        let end = self.text.floor_char_boundary(fault.at.saturating_add(BEHIND));
-        let before = &self.text[fault.from..part.start];
+        let before = &self.text[..part.start];
         // A word that the fault lies in is read as it is.
         let Some(between) = self.text.get(part.end..fault.at) else { return Again::No };
         let found = before.len() + by.len() + between.len();
-        let text = format!("{before}{by}{between}{}", &self.text[fault.at..end]);
-        match failure(fault.rule, &text, 0) {
+        let text = format!("{before}{by}{between}{}", &self.text[fault.at..]);
+        match failure(fault.rule, &text) {
             None => Again::Whole,
             Some((at, _)) if at > found => Again::Further,
             Some(_) => Again::No,
         }
     }
-}
-
-/// A text up to the line that starts the next declaration, and whether there is one; less a comment that was cut.
-fn own_part(text: &str) -> (&str, bool) {
-    let (mut at, mut starts_line) = (0, false);
-    while at < text.len() {
-        let rest = &text[at..];
-        if let Some(length) = lexeme::trivia(rest) {
-            starts_line |= rest[..length].contains('\n');
-            at += length;
-            continue;
-        }
-        let token = lexeme::first(rest);
-        let is_next = starts_line && starts_declaration(token);
-        if is_next || rest.starts_with("/*") {
-            return (&text[..at], is_next);
-        }
-        starts_line = false;
-        at += token.len().max(1);
-    }
-    (text, false)
 }
 
 /// How far a text goes on that was changed.
@@ -187,19 +151,17 @@ mod tests {
     use crate::syntax::source::{Source, SourceId};
 
     #[test]
-    fn a_bracket_is_accused_only_where_all_behind_it_was_seen() {
+    fn a_bracket_is_accused_where_nothing_closes_it() {
         let codes = |behind: &str| {
             let text = format!("check P(F<=1 s (p within {behind}");
             let (_, said) = parse_properties(&Source::new(SourceId(0), "a.bltl", text.as_str()));
             said.into_iter().map(|one| one.code).collect::<Vec<_>>()
         };
-        let sum = "1 + ".repeat(BEHIND);
+        let sum = "1 + ".repeat(1000);
         assert_eq!(codes("2 >= 0.5"), [code::UNCLOSED]);
         assert_eq!(codes("2)) >= 0.5"), [code::UNEXPECTED]);
         assert_eq!(codes(&format!("{sum}2)) >= 0.5")), [code::UNEXPECTED]);
-        assert_eq!(codes(&format!("2\nlet a = {sum}2)) >= 0.5"))[0], code::UNCLOSED);
-        // What a comment says declares nothing.
+        // A declaration says nothing in a comment.
         assert_eq!(codes("/* 1\nlet it be */ 2)) >= 0.5"), [code::UNEXPECTED]);
-        assert_eq!(codes("2 /* 1\n */ let a = (2) >= 0.5")[0], code::UNCLOSED);
     }
 }

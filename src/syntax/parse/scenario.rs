@@ -5,47 +5,36 @@ use super::grammar::Rule;
 use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, PathsDecl, Route, ScenarioFile, Value};
 
 impl Builder<'_> {
-    pub(super) fn scenario_file(&mut self, file: Pair<'_>) -> ScenarioFile {
-        self.report_faults(&file);
-        let items = Parts::of(file)
-            .filter(|part| part.as_rule() == Rule::item)
-            .filter_map(|part| {
-                let part = part.into_inner().next()?;
-                let head = self.head(&part);
-                let item = self.item(part);
-                self.missed(item, head)
-            })
-            .collect();
-        ScenarioFile {
-            items,
-            cut: std::mem::take(&mut self.cut),
-            lost: std::mem::take(&mut self.lost),
-            doubts: self.doubts(),
-        }
+    pub(super) fn scenario_file(&mut self) -> ScenarioFile {
+        let layout = self.layout;
+        let items = self.items(&layout.items, Rule::line_of_scenario, &mut Self::item);
+        ScenarioFile { items, broken: std::mem::take(&mut self.broken), ..ScenarioFile::default() }
     }
 
     fn item(&mut self, pair: Pair<'_>) -> Option<Item> {
+        let pair = pair.into_inner().next()?;
         let span = self.span(&pair);
         match pair.as_rule() {
             Rule::title => Some(Item::Title(self.quoted(&Parts::of(pair).part(Rule::text)?))),
             Rule::setting => {
-                if self.sets_a_unit(&pair) || self.sets_a_keyword(&pair) {
+                if let Some(slip) = self.slip_of_name() {
+                    self.say(slip);
                     return None;
                 }
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::ident)?);
-                Some(Item::Setting { name, value: self.expr(parts.part(Rule::expr)?)? })
+                Some(Item::Setting { name, value: self.expr(parts.part(Rule::expr)?) })
             }
             Rule::const_decl => {
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::name)?);
-                Some(Item::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
+                Some(Item::Const { name, value: self.expr(parts.part(Rule::expr)?) })
             }
             Rule::param => {
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::name)?);
                 if let Some(value) = parts.part(Rule::expr) {
-                    return Some(Item::Param { name, value: self.expr(value)?, range: None });
+                    return Some(Item::Param { name, value: self.expr(value), range: None });
                 }
                 let (value, low, high) = self.truncated(parts.part(Rule::truncated)?)?;
                 Some(Item::Param { name, value, range: Some((low, high)) })
@@ -68,9 +57,11 @@ impl Builder<'_> {
             Rule::paths => {
                 let mut parts = Parts::of(pair);
                 let agent = self.ident(&parts.part(Rule::name)?);
-                let member = self.member(&mut parts)?;
-                let mut item = Parts::of(parts.find(|part| part.as_rule() == Rule::alternatives)?);
-                let alternatives = self.expr(item.part(Rule::arith)?)?;
+                let member = self.member(&mut parts);
+                let block = parts.part(Rule::block)?;
+                let alternatives = self.only(&block, Rule::line_of_paths, &mut |builder, item| {
+                    Some(builder.expr(Parts::of(item).part(Rule::arith)?))
+                })?;
                 Some(Item::Paths(PathsDecl { agent, member, alternatives, span }))
             }
             Rule::process => self.process(pair).map(Item::Process),
@@ -86,7 +77,7 @@ impl Builder<'_> {
         let name = self.ident(&parts.part(Rule::name)?);
         let arguments =
             parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
-        Some(LetDecl { name, arguments, body: self.expr(parts.part(Rule::expr)?)? })
+        Some(LetDecl { name, arguments, body: self.expr(parts.part(Rule::expr)?) })
     }
 
     pub(super) fn parameters(&mut self, pair: Pair<'_>) -> Vec<crate::syntax::ast::Ident> {
@@ -94,32 +85,24 @@ impl Builder<'_> {
     }
 
     fn moves(&mut self, pair: Pair<'_>) -> Option<MovesDecl> {
-        self.report_faults(&pair);
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let agent = self.ident(&parts.part(Rule::name)?);
-        let member = self.member(&mut parts)?;
-        let duration = self.expr(parts.part(Rule::arith)?)?;
-        let options = parts
-            .filter(|part| part.as_rule() == Rule::move_option)
-            .filter_map(|part| {
-                let part = part.into_inner().next()?;
-                let head = self.head(&part);
-                let option = self.move_option(part);
-                self.missed(option, head)
-            })
-            .collect();
+        let member = self.member(&mut parts);
+        let duration = self.expr(parts.part(Rule::arith)?);
+        let options = self.block(&parts.part(Rule::block)?, Rule::line_of_moves, &mut Self::move_option);
         Some(MovesDecl { agent, member, duration, options, span })
     }
 
     fn move_option(&mut self, pair: Pair<'_>) -> Option<MoveOption> {
+        let pair = pair.into_inner().next()?;
         let span = self.span(&pair);
         match pair.as_rule() {
             Rule::headings => {
                 let mut parts = Parts::of(pair);
-                let from = self.expr(parts.part(Rule::arith)?)?;
-                let to = self.expr(parts.part(Rule::arith)?)?;
-                let by = self.expr(parts.part(Rule::arith)?)?;
+                let from = self.expr(parts.part(Rule::arith)?);
+                let to = self.expr(parts.part(Rule::arith)?);
+                let by = self.expr(parts.part(Rule::arith)?);
                 Some(MoveOption::Headings { from, to, by, span })
             }
             Rule::named_route => {
@@ -132,7 +115,7 @@ impl Builder<'_> {
                 };
                 Some(MoveOption::Route { name, route, span })
             }
-            Rule::heading => Some(MoveOption::Heading(self.expr(Parts::of(pair).part(Rule::arith)?)?)),
+            Rule::heading => Some(MoveOption::Heading(self.expr(Parts::of(pair).part(Rule::arith)?))),
             _ => Some(MoveOption::Stop(span)),
         }
     }

@@ -6,44 +6,36 @@ use crate::syntax::ast::{Expr, SceneItem, ShapeExpr};
 
 impl Builder<'_> {
     pub(super) fn scene(&mut self, pair: Pair<'_>) -> Vec<SceneItem> {
-        self.report_faults(&pair);
-        Parts::of(pair)
-            .filter(|part| part.as_rule() == Rule::scene_item)
-            .filter_map(|part| {
-                let part = part.into_inner().next()?;
-                let head = self.head(&part);
-                let item = self.scene_item(part);
-                self.missed(item, head)
-            })
-            .collect()
+        match Parts::of(pair).part(Rule::block) {
+            Some(block) => self.block(&block, Rule::line_of_scene, &mut Self::scene_item),
+            None => Vec::new(),
+        }
     }
 
     fn scene_item(&mut self, pair: Pair<'_>) -> Option<SceneItem> {
+        let pair = pair.into_inner().next()?;
         let span = self.span(&pair);
         let rule = pair.as_rule();
         let mut parts = Parts::of(pair);
         if rule == Rule::import {
             let path = self.quoted(&parts.part(Rule::text)?);
             let walkable = parts.part(Rule::walkable).is_some();
-            let filter = match parts.part(Rule::expr) {
-                Some(filter) => Some(self.expr(filter)?),
-                None => None,
-            };
+            let filter = parts.part(Rule::expr).map(|filter| self.expr(filter));
             return Some(SceneItem::Import { path, walkable, filter, fields: self.body(parts), span });
         }
         if rule == Rule::periodic {
             let axis = self.ident(&parts.part(Rule::name)?);
-            let low = self.expr(parts.part(Rule::arith)?)?;
+            let low = self.expr(parts.part(Rule::arith)?);
             return Some(SceneItem::Periodic {
                 axis,
-                ends: [low, self.expr(parts.part(Rule::arith)?)?],
+                ends: [low, self.expr(parts.part(Rule::arith)?)],
                 span,
             });
         }
         let name = parts.part(Rule::name).map(|name| self.ident(&name));
         match rule {
             Rule::wall => {
-                let points = parts.map(|point| self.expr(point)).collect::<Option<_>>()?;
+                let points = parts.map(|point| self.expr(point)).collect();
                 Some(SceneItem::Wall { name, points, span })
             }
             Rule::obstacle => {
@@ -53,10 +45,10 @@ impl Builder<'_> {
                 Some(SceneItem::Region { name: name?, shape: self.shape(parts.part(Rule::shape)?)? })
             }
             Rule::line => {
-                let a = self.expr(parts.part(Rule::place)?)?;
-                Some(SceneItem::Line { name: name?, ends: [a, self.expr(parts.part(Rule::place)?)?], span })
+                let a = self.expr(parts.part(Rule::place)?);
+                Some(SceneItem::Line { name: name?, ends: [a, self.expr(parts.part(Rule::place)?)], span })
             }
-            _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?)? }),
+            _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?) }),
         }
     }
 
@@ -67,13 +59,13 @@ impl Builder<'_> {
             Rule::name => Some(ShapeExpr::Named(self.ident(&pair))),
             Rule::circle => {
                 let mut parts = Parts::of(pair);
-                let centre = self.expr(parts.part(Rule::place)?)?;
-                Some(ShapeExpr::Circle { centre, radius: self.expr(parts.part(Rule::arith)?)?, span })
+                let centre = self.expr(parts.part(Rule::place)?);
+                Some(ShapeExpr::Circle { centre, radius: self.expr(parts.part(Rule::arith)?), span })
             }
             Rule::rect => {
                 let mut parts = Parts::of(pair);
-                let a = self.expr(parts.part(Rule::place)?)?;
-                Some(ShapeExpr::Rectangle { a, b: self.expr(parts.part(Rule::place)?)?, span })
+                let a = self.expr(parts.part(Rule::place)?);
+                Some(ShapeExpr::Rectangle { a, b: self.expr(parts.part(Rule::place)?), span })
             }
             _ => {
                 let mut outlines = Parts::of(pair).map(|outline| self.outline(outline));

@@ -2,16 +2,17 @@
 
 use super::builder::{Builder, Pair};
 use super::code;
-use super::fault::{Fault, quote};
+use super::fault::Fault;
 use super::grammar::Rule;
-use super::{lexeme, nouns, quantity};
+use super::{lexeme, nouns};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Builder<'_> {
     /// The diagnostic of a known slip.
     pub(super) fn slip(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        self.slip_of_form(fault)
+        self.slip_of_point(fault)
+            .or_else(|| self.slip_of_form(fault))
             .or_else(|| self.slip_in_text(fault))
             .or_else(|| self.slip_of_bound(fault))
             .or_else(|| self.slip_of_unit_in_bound(fault))
@@ -39,9 +40,9 @@ impl Builder<'_> {
             );
         }
         // `3 % 2`, but not a number where the next line starts.
-        let before = self.text[..fault.at].trim_end_matches([' ', '\t']);
+        let before = self.text[..fault.at].trim_end_matches(' ');
         if fault.found.starts_with(|c: char| c.is_ascii_digit()) && before.ends_with('%') {
-            return Some(percent(self.place(before.len() - 1, "%")));
+            return Some(percent(self.at(before.len() - 1..before.len())));
         }
         let plain = match fault.found {
             "“" | "”" | "„" | "‘" | "’" | "'" => "\"",
@@ -58,7 +59,7 @@ impl Builder<'_> {
             _ => return None,
         };
         Some(
-            Diagnostic::error(code::CHARACTER, place, format!("unexpected {}", quote(fault.found)))
+            Diagnostic::error(code::CHARACTER, place, format!("unexpected {}", self.quote(fault.found)))
                 .hint(format!("write `{plain}`")),
         )
     }
@@ -88,7 +89,7 @@ impl Builder<'_> {
             );
         }
         if matches!(fault.found, "==" | ":=" | "===")
-            && let Some((_, word)) = lexeme::word_before(self.text, fault.at)
+            && let Some((_, word)) = lexeme::word_before(&self.text, fault.at)
             && let Some(wanted) = unsigned(word)
         {
             let title = format!("expected {wanted}, found `{}`", fault.found);
@@ -103,11 +104,10 @@ impl Builder<'_> {
         if fault.found != "=" || !fault.after_value() {
             return None;
         }
-        if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
-            && start > fault.from
-            && self.text[fault.from..start].trim_end_matches([' ', '\t', '\r']).ends_with('\n')
+        if let Some((start, word)) = lexeme::word_before(&self.text, fault.at)
+            && self.text[..start].trim_end_matches(' ').ends_with('\n')
         {
-            let place = Span::new(self.source.id, start, start + word.len());
+            let place = self.at(start..start + word.len());
             return Some(
                 Diagnostic::error(
                     code::UNEXPECTED,
@@ -117,7 +117,7 @@ impl Builder<'_> {
                 .hint("the value before it is missing or ends in an operator"),
             );
         }
-        if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
+        if let Some((start, word)) = lexeme::word_before(&self.text, fault.at)
             && let Some((_, word)) = word.rsplit_once('.')
             && self.follows_arrow(start)
         {
@@ -133,57 +133,46 @@ impl Builder<'_> {
         )
     }
 
-    /// `horizon = 30 s = 0.02 s`: a name that is set is no unit, so that the grammar took `s = …` for a setting of its
-    /// own. Reports it, and whether it is so.
-    pub(super) fn sets_a_unit(&mut self, setting: &Pair<'_>) -> bool {
-        let (start, text) = (setting.as_span().start(), setting.as_str());
-        let name = lexeme::first(text);
-        // What can be set is set, on the same line too.
-        if !quantity::UNITS.contains(&name) || name == "step" {
-            return false;
-        }
-        // The number may stand on the line before, where what is set here lost its name.
-        let before = self.text[..start].trim_end().len();
-        let number = lexeme::word_before(self.text, start)
-            .map(|(_, number)| number)
-            .filter(|number| number.starts_with(|c: char| c.is_ascii_digit()))
-            .filter(|_| !self.text[before..start].contains('\n'));
-        let Some(number) = number else { return false };
-        let line = self.source.line_start(start as u32) as usize;
-        let equals = start + text.find('=').unwrap_or(0);
-        let place = Span::new(self.source.id, equals, equals + 1);
-        let error =
-            Diagnostic::error(code::UNEXPECTED, place, format!("unexpected `=` after `{number} {name}`"));
-        self.say(error.hint("the name to set is missing; `==` compares"));
-        self.cut.push(Span::new(self.source.id, line, start + text.len()));
-        true
+    /// `const = 3`: a declaration without its name may read as a setting.
+    pub(super) fn slip_of_name(&self) -> Option<Diagnostic> {
+        let word = lexeme::first(&self.text);
+        let rest = self.text[word.len()..].trim_start();
+        let is_set = rest.starts_with('=') && !rest.starts_with("==");
+        let wanted = unsigned(word).filter(|_| is_set && !self.in_properties)?;
+        let at = self.text.len() - rest.len();
+        let title = format!("expected {wanted}, found `=`");
+        Some(Diagnostic::error(code::UNEXPECTED, self.at(at..at + 1), title))
     }
 
-    /// `const = 3`: a declaration without its name reads as a setting. Reports it, and whether it is so.
-    pub(super) fn sets_a_keyword(&mut self, setting: &Pair<'_>) -> bool {
-        let (start, text) = (setting.as_span().start(), setting.as_str());
-        let Some(wanted) = unsigned(lexeme::first(text)) else { return false };
-        let equals = start + text.find('=').unwrap_or(0);
-        let place = Span::new(self.source.id, equals, equals + 1);
-        self.say(Diagnostic::error(code::UNEXPECTED, place, format!("expected {wanted}, found `=`")));
-        self.lost.push(Span::new(self.source.id, start, start + text.len()));
-        true
+    /// `horizon = 5.`
+    fn slip_of_point(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let before = self.text[..fault.at].trim_end();
+        let number = before.strip_suffix('.')?;
+        let digits = number.len() - number.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let written = &number[number.len() - digits..];
+        let is_name = number[..number.len() - digits].ends_with(lexeme::continues_name);
+        if digits == 0 || is_name {
+            return None;
+        }
+        let place = self.at(number.len()..before.len());
+        let error = Diagnostic::error(code::UNEXPECTED, place, "a number cannot end in a point");
+        Some(error.hint(format!("write `{written}`, or `{written}.0`")))
     }
 
     /// `if a then b`
     fn slip_of_if(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let (at, word) = lexeme::word_before(self.text, fault.at)?;
+        let (at, word) = lexeme::word_before(&self.text, fault.at)?;
         if word != "if" || !fault.after_value() {
             return None;
         }
         let error =
-            Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` must be written as a function");
+            Diagnostic::error(code::OPERATOR, self.at(at..at + 2), "`if` must be written as a function");
         Some(error.hint("write `if(condition, then, otherwise)`; for formulas `(a => b) & (!a => c)`"))
     }
 
     /// `check E(m) >= 1.5 in 0 .. 2`
     fn slip_of_range(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        if fault.found != "in" || self.root != Rule::property_file || !fault.after_value() {
+        if fault.found != "in" || !self.in_properties || !fault.after_value() {
             return None;
         }
         let place = self.place(fault.at, fault.found);
@@ -193,14 +182,14 @@ impl Builder<'_> {
 
     /// `foral a in crowd: …`
     fn slip_of_quantifier(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let rest = self.text[fault.at + fault.found.len()..].trim_start();
-        let ranges = rest.strip_prefix("in").is_some_and(|set| !set.starts_with(lexeme::starts_name));
+        let ranges =
+            self.behind(fault).strip_prefix("in").is_some_and(|set| !set.starts_with(lexeme::starts_name));
         if !ranges || !fault.found.starts_with(lexeme::starts_name) {
             return None;
         }
-        let (at, word) = lexeme::word_before(self.text, fault.at)?;
+        let (at, word) = lexeme::word_before(&self.text, fault.at)?;
         let meant = nouns::nearest(word, ["forall", "exists"].into_iter())?;
-        let place = Span::new(self.source.id, at, at + word.len());
+        let place = self.at(at..at + word.len());
         let error = Diagnostic::error(code::UNEXPECTED, place, format!("unknown quantifier `{word}`"));
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
@@ -215,18 +204,18 @@ impl Builder<'_> {
         } else {
             return None;
         };
-        let ends = fault.found.is_empty() || matches!(fault.found, ";" | "with");
+        let ends = matches!(fault.found, "" | ";" | "with");
         let goes_on = [Rule::clause, Rule::property_item]
             .into_iter()
             .any(|rule| nouns::words(rule).contains(&fault.found));
         if !ends && !goes_on {
             return None;
         }
-        let compared = &self.text[fault.from..fault.at];
+        let compared = &self.text[..fault.at];
         let set = compared.rsplit_once("under").map(|(_, set)| lexeme::first(set.trim_start()));
         let name = set.filter(|name| name.starts_with(lexeme::starts_name)).unwrap_or("n");
-        let title = format!("expected `{lacks}`, found {}", quote(fault.found));
-        let error = Diagnostic::error(code::UNEXPECTED, self.place_of(fault), title);
+        let title = format!("expected `{lacks}`, found {}", self.quote(fault.found));
+        let error = Diagnostic::error(code::UNEXPECTED, self.place(fault.at, fault.found), title);
         Some(error.hint(format!("write two sides: `compare P(…) under {name} = … with {name} = …`")))
     }
 
@@ -252,13 +241,13 @@ impl Builder<'_> {
         }
         let (at, joined) = if fault.found == "=" {
             // The operator was taken, and the name after it.
-            let (name, _) = lexeme::word_before(self.text, fault.at)?;
+            let (name, _) = lexeme::word_before(&self.text, fault.at)?;
             let before = self.text[..name].trim_end();
             let joined = before.chars().next_back().filter(|c| matches!(c, '&' | '∧'))?;
             let at = before.len() - joined.len_utf8();
             (at, &before[at..])
         } else {
-            let after = self.text[fault.at + fault.found.len()..].trim_start();
+            let after = self.behind(fault);
             let name = lexeme::first(after);
             let sets = after[name.len()..].trim_start();
             let is_set = name.starts_with(lexeme::starts_name)
@@ -276,16 +265,19 @@ impl Builder<'_> {
         } else {
             "write `,`"
         };
-        Some(Diagnostic::error(code::OPERATOR, self.place(at, joined), title).hint(hint))
+        Some(Diagnostic::error(code::OPERATOR, self.at(at..at + joined.len()), title).hint(hint))
     }
 
     /// `process p { n = 3 }`
     fn slip_of_process(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let expects =
-            fault.expected.contains(&Rule::process_item) || fault.expected.contains(&Rule::process_item_end);
-        let rest = self.text[fault.at + fault.found.len()..].trim_start();
+        let expects = fault.expected.iter().any(|rule| matches!(rule, Rule::process_item | Rule::EOI));
+        let rest = self.behind(fault);
         let sets = rest.starts_with('=') && !rest.starts_with("==") && !rest.starts_with("=>");
-        if !expects || !sets || !fault.found.starts_with(lexeme::starts_name) {
+        if fault.rule != Rule::line_of_process
+            || !expects
+            || !sets
+            || !fault.found.starts_with(lexeme::starts_name)
+        {
             return None;
         }
         let place = self.place(fault.at, fault.found);

@@ -15,8 +15,8 @@ const INITIAL: [&str; 4] = ["as", "init", "initially", "is"];
 impl Builder<'_> {
     /// `F<=2 sec p`: the bound ended before its unit, which reads as a name.
     pub(super) fn slip_of_unit_in_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let (at, word) = lexeme::word_before(self.text, fault.at).filter(|_| fault.after_value())?;
-        let (number_at, number) = lexeme::word_before(self.text, at)?;
+        let (at, word) = lexeme::word_before(&self.text, fault.at).filter(|_| fault.after_value())?;
+        let (number_at, number) = lexeme::word_before(&self.text, at)?;
         let before = self.text[..number_at].trim_end();
         let bounded = before.strip_suffix("<=").or_else(|| before.strip_suffix('≤'))?.trim_end();
         let (_, operator) = lexeme::word_before(bounded, bounded.len())?;
@@ -25,41 +25,41 @@ impl Builder<'_> {
         let is_number = number.starts_with(|c: char| c.is_ascii_digit());
         // A name with its member is no unit.
         let is_fine = quantity::UNITS.contains(&word) || word.contains('.');
-        if !is_bound || !is_number || is_fine || self.root != Rule::property_file || self.is_declared(word) {
+        if !is_bound || !is_number || is_fine || !self.in_properties || self.declared().contains_key(word) {
             return None;
         }
         let (unit, _) = quantity::time_meant(word)?;
-        let error = Diagnostic::error(code::UNIT, self.place(at, word), format!("unknown unit `{word}`"));
+        let error =
+            Diagnostic::error(code::UNIT, self.at(at..at + word.len()), format!("unknown unit `{word}`"));
         Some(error.hint(format!("did you mean `{number} {unit}`?")))
     }
 
     /// `var n: 0 m .. 3 m = 0`: before the `=` the second unit reads as a name that is set.
     pub(super) fn slip_of_whole_range(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let declared = &self.text[fault.from..fault.at];
-        if fault.rule != Rule::strict_process_item || lexeme::first(declared) != "var" {
+        let declared = &self.text[..fault.at];
+        if fault.rule != Rule::line_of_process || lexeme::first(declared) != "var" {
             return None;
         }
         let (head, range) = declared.split_once(':')?;
         if !range.contains("..") || range.contains('=') {
             return None;
         }
-        let end = if fault.found == "=" { fault.at } else { fault.at + fault.found.len() };
+        let end =
+            if fault.found == "=" { fault.at } else { fault.at + fault.found.len() }.min(self.text.len());
         let (_, name) = lexeme::word_before(head, head.len())?;
         self.unit_in_range(name, fault.at - range.len()..end)
     }
 
     /// `var n: 0 .. 3 init 0`: a word for the sign, as other languages have it.
     pub(super) fn slip_of_initial(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        if fault.rule != Rule::strict_process_item
-            || lexeme::first(&self.text[fault.from..]) != "var"
+        if fault.rule != Rule::line_of_process
+            || lexeme::first(&self.text) != "var"
             || !fault.expected.contains(&Rule::t_assign)
             || !INITIAL.contains(&fault.found)
         {
             return None;
         }
-        let rest = &self.text[fault.at + fault.found.len()..];
-        let value = rest.trim_start_matches([' ', '\t']);
-        let value = lexeme::first(if value.starts_with(['\r', '\n']) { "" } else { value });
+        let value = lexeme::first(self.behind(fault));
         let is_value = value.starts_with(lexeme::continues_name);
         let title = format!("expected `=`, found `{}`", fault.found);
         let error = Diagnostic::error(code::UNEXPECTED, self.place(fault.at, fault.found), title);
@@ -81,7 +81,7 @@ impl Builder<'_> {
                 quantity::UNITS.contains(&token) || meant.is_some_and(|(_, is_sure)| is_sure)
             };
             if after_number && is_unit() {
-                let place = self.place(at, token);
+                let place = self.at(at..at + token.len());
                 let error =
                     Diagnostic::error(code::UNIT, place, "a range of whole numbers cannot have units");
                 return Some(
@@ -103,10 +103,10 @@ impl Builder<'_> {
             return Some(slip);
         }
         // `3 N m`
-        let (unit_at, before_it) = lexeme::word_before(self.text, fault.at)?;
+        let (unit_at, before_it) = lexeme::word_before(&self.text, fault.at)?;
         let factor = quantity::UNITS.contains(&fault.found) && quantity::UNITS.contains(&before_it);
         if factor
-            && let Some((_, number)) = lexeme::word_before(self.text, unit_at)
+            && let Some((_, number)) = lexeme::word_before(&self.text, unit_at)
             && number.starts_with(|c: char| c.is_ascii_digit())
         {
             let place = self.place(fault.at, fault.found);
@@ -118,27 +118,26 @@ impl Builder<'_> {
         }
         let before = &self.text[..fault.at];
         let between = &before[before.trim_end().len()..];
-        let (number_at, number) = lexeme::word_before(self.text, fault.at)?;
+        let (number_at, number) = lexeme::word_before(&self.text, fault.at)?;
         // In `m^2` it is a power.
         let is_power = self.text[..number_at].ends_with('^');
         if between.contains('\n') || is_power || !number.starts_with(|c: char| c.is_ascii_digit()) {
             return None;
         }
-        let after = fault.at + fault.found.len();
-        let rest = self.text[after..].trim_start();
+        let rest = self.behind(fault);
         if quantity::UNITS.contains(&fault.found) && rest.starts_with('=') && !rest.starts_with("==") {
             // A name that is set is no unit, so that the grammar stopped before it.
             let at = self.text.len() - rest.len();
             let said = Diagnostic::error(
                 code::UNEXPECTED,
-                self.place(at, "="),
+                self.at(at..at + 1),
                 format!("unexpected `=` after `{number} {}`", fault.found),
             );
             return Some(said.hint("`=` sets a value, `==` compares"));
         }
         let unit = quantity::nearest_unit(fault.found);
         let near_keyword = fault.expected.iter().any(|&rule| {
-            let words = nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied());
+            let words = nouns::keyword(rule).into_iter().chain(nouns::words(rule));
             nouns::nearest(fault.found, words).is_some()
         });
         // Some are functions, too.
@@ -151,7 +150,6 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let rest = self.text[fault.at + fault.found.len()..].trim_start();
         let argues = rest.starts_with('(') || rest.starts_with('=') && !rest.starts_with("==");
         if argues && fault.expected.contains(&Rule::t_comma) {
             let error =
@@ -171,11 +169,10 @@ impl Builder<'_> {
 
     /// `5 kg/(m sec)`: a name among the units in parentheses.
     fn slip_of_factor(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let (open, _) =
-            nesting::open_bracket(self.text, fault.from, fault.at).filter(|(_, open)| *open == '(')?;
-        let above = self.text[fault.from..open].strip_suffix('/')?;
+        let (open, _) = nesting::open_bracket(&self.text, fault.at).filter(|(_, open)| *open == '(')?;
+        let above = self.text[..open].strip_suffix('/')?;
         let (_, above) = lexeme::word_before(above, above.len())?;
-        let factors = &self.text[open + 1..fault.at + fault.found.len()];
+        let factors = self.text.get(open + 1..fault.at + fault.found.len())?;
         let is_product =
             !factors.contains(|c: char| !lexeme::continues_name(c) && !matches!(c, ' ' | '\t' | '*'));
         if !quantity::UNITS.contains(&above) || !is_product {
@@ -183,8 +180,9 @@ impl Builder<'_> {
         }
         let mut words = factors.split(|c| !lexeme::continues_name(c));
         let word = words.find(|word| !word.is_empty() && !quantity::UNITS.contains(word))?;
-        let (unit, _) = quantity::unit_meant(word).filter(|_| !self.is_declared(word))?;
-        let place = self.place(open + 1 + factors.find(word)?, word);
+        let (unit, _) = quantity::unit_meant(word).filter(|_| !self.declared().contains_key(word))?;
+        let start = open + 1 + factors.find(word)?;
+        let place = self.at(start..start + word.len());
         let error = Diagnostic::error(code::UNIT, place, format!("unknown unit `{word}`"));
         Some(error.hint(format!("did you mean `{unit}`?")))
     }

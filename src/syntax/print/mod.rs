@@ -11,17 +11,18 @@ mod writer;
 
 use super::diagnostic::{Diagnostic, Severity};
 use super::parse::grammar::Rule;
-use super::parse::{parse_properties, parse_scenario, with_pairs};
+use super::parse::layout::{Layout, tokens};
+use super::parse::{parse_properties, parse_scenario};
 use super::source::Source;
 
 /// Formats a scenario; its errors if it has any.
 pub fn format_scenario(source: &Source) -> Result<String, Vec<Diagnostic>> {
-    format(source, Rule::scenario_file, parse_scenario(source).1)
+    format(source, Rule::line_of_scenario, parse_scenario(source).1)
 }
 
 /// Formats a property file; its errors if it has any.
 pub fn format_properties(source: &Source) -> Result<String, Vec<Diagnostic>> {
-    format(source, Rule::property_file, parse_properties(source).1)
+    format(source, Rule::line_of_properties, parse_properties(source).1)
 }
 
 fn format(source: &Source, rule: Rule, diagnostics: Vec<Diagnostic>) -> Result<String, Vec<Diagnostic>> {
@@ -30,11 +31,10 @@ fn format(source: &Source, rule: Rule, diagnostics: Vec<Diagnostic>) -> Result<S
     if !errors.is_empty() {
         return Err(errors);
     }
-    with_pairs(source, rule, |file| {
-        let members = token::members(file);
-        // A comment of several lines keeps its line ends, and they are all of one kind.
-        lines::join(writer::write(&source.text, &members)).replace("\r\n", "\n")
-    })
+    let layout = Layout::of(&source.text, tokens(&source.text), rule == Rule::line_of_properties);
+    let members = token::members(&layout, &layout.items, rule);
+    // A comment of several lines keeps its line ends, and they are all of one kind.
+    Ok(lines::join(writer::write(&source.text, &members)).replace("\r\n", "\n"))
 }
 
 #[cfg(test)]
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn blocks_written_on_one_line_stay_there() {
-        assert_eq!(scenario("kind a:b{x=1 y=2}"), "kind a: b { x = 1; y = 2 }\n");
+        assert_eq!(scenario("kind a:b{x=1;y=2}"), "kind a: b { x = 1; y = 2 }\n");
         assert_eq!(scenario("kind a:b{x=1\nyy=2}"), "kind a: b {\n  x  = 1\n  yy = 2\n}\n");
         assert_eq!(scenario("scene{}"), "scene {}\n");
         assert_eq!(
