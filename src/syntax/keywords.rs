@@ -20,6 +20,10 @@ pub enum Place {
     State,
     /// `moves a for 2 s { … }`
     Moves,
+    /// The fields of a declaration.
+    Fields,
+    /// Any other block: updates, answers, paths.
+    Other,
 }
 use Place::{Behaviour, Moves, Process, Properties, Scenario, Scene, State};
 

@@ -1,17 +1,14 @@
 //! What could not be read, and which errors come of it.
 
-use super::{
-    CIRCULAR, DIMENSION, EARLY, LACKING, UNKNOWN, bare, block_end, has_word, leading_word, lines, word, words,
-};
-use crate::compile::dimension;
+use super::{CIRCULAR, DIMENSION, EARLY, LACKING, bare, block_end, leading_word, word, words};
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
-use crate::syntax::ast::Item;
+use crate::syntax::ast::{self, Item};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::keywords::{Declares, KEYWORDS, Place, keyword};
 use crate::syntax::parse::starts_name;
 use crate::syntax::source::{Source, SourceId, Span};
-use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Codes of names that are not there, or of what needs one.
@@ -21,13 +18,6 @@ const NAMES: [Code; 8] =
 const PLACED_AT_NAME: [Code; 5] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210, Code::E0606];
 /// Codes of a clock that has or lacks steps: a process that was not read may have had rates.
 const CLOCKS: [Code; 3] = [Code::E0503, Code::E0507, Code::E0508];
-/// Codes of brackets that do not pair up.
-const BRACKETS: [Code; 6] = [Code::E0102, Code::E0103, Code::E0104, Code::E0105, Code::E0106, Code::E0107];
-/// Codes of a file that was not read at all, or not from this place on.
-const TOO_DEEP: Code = Code::E0106;
-const COMMENT: Code = Code::E0104;
-/// Code of a closing bracket without an opening one.
-const STRAY: Code = Code::E0103;
 /// Code of a scenario without a valid horizon or step.
 const SETTING: Code = Code::E0505;
 /// Code of moves without an option.
@@ -38,318 +28,143 @@ const NO_MOVES: Code = Code::E0606;
 const INSIDE: [Code; 2] = [Code::E0409, Code::E0801];
 /// Part of the title of an error about too many agents for a place.
 const CROWDED: &str = " cannot be placed: ";
-/// Codes after which the rest of a line is unreliable, besides those of brackets.
-const DERAILS: [Code; 2] = [Code::E0101, Code::E0112];
-/// Marks that follow the name of a declaration.
-const AFTER_NAME: [char; 4] = ['=', ':', '{', '['];
-/// Code of one sign of equality for another.
-const EQUALS: Code = Code::E0112;
-/// Words that start a declaration with a name.
-const DECLARES: [&str; 22] = [
-    "agent",
-    "agents",
-    "behaviour",
-    "const",
-    "group",
-    "groups",
-    "kind",
-    "label",
-    "let",
-    "line",
-    "obstacle",
-    "param",
-    "point",
-    "process",
-    "property",
-    "region",
-    "source",
-    "state",
-    "tracks",
-    "var",
-    "wall",
-    "on",
-];
-/// Words that start what has no name of its own.
-const NAMELESS: [&str; 14] = [
-    "after", "check", "choose", "compare", "estimate", "family", "heading", "import", "moves", "periodic",
-    "rank", "scene", "stop", "when",
-];
-/// Words that start a part of a scene.
-const SCENERY: [&str; 7] = ["import", "line", "obstacle", "periodic", "point", "region", "wall"];
-/// Words that start what has no part in a clock, and words that have.
-const TIMELESS: [&str; 12] = [
-    "const", "kind", "label", "let", "line", "obstacle", "param", "point", "region", "tracks", "var", "wall",
-];
+/// Words that decide the clock.
 const TIMES: [&str; 6] = ["after", "at", "horizon", "process", "step", "when"];
+/// Most broken items before a place that may reach up to it.
+const MOST_AROUND: usize = 8;
+/// Words of declarations that have fields.
+const BODIES: [&str; 5] = ["agent", "agents", "group", "kind", "source"];
 
-/// Parts of sources by where they start, with the greatest end of a part up to there.
-struct Parts(Vec<(Span, u32)>);
-
-impl Parts {
-    fn of(parts: impl Iterator<Item = Span>) -> Self {
-        let mut parts: Vec<(Span, u32)> = parts.map(|part| (part, part.end)).collect();
-        parts.sort_unstable();
-        for k in 1..parts.len() {
-            if parts[k - 1].0.source == parts[k].0.source {
-                parts[k].1 = parts[k].1.max(parts[k - 1].1);
-            }
-        }
-        Self(parts)
-    }
-
-    /// Whether a place lies in one of them.
-    fn hold(&self, place: Span) -> bool {
-        let before =
-            self.0.partition_point(|(part, _)| (part.source, part.start) <= (place.source, place.start));
-        self.0[..before].last().is_some_and(|(part, end)| part.source == place.source && place.end <= *end)
-    }
-
-    /// Whether one of them lies in a place.
-    fn some_within(&self, place: Span) -> bool {
-        let from =
-            self.0.partition_point(|(part, _)| (part.source, part.start) < (place.source, place.start));
-        self.0[from..]
-            .iter()
-            .take_while(|(part, _)| part.source == place.source && part.start < place.end)
-            .any(|(part, _)| part.end <= place.end)
-    }
-}
-
-/// The parts of the sources that could not be read.
+/// The items of the sources that could not be read.
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Broken<'i> {
     sources: &'i [Source],
-    /// Texts that were skipped or whose values could not be read, with declarations that ended early, and their words.
-    lost: Parts,
-    skipped: Parts,
-    swallowed: BTreeSet<&'i str>,
-    /// Names whose declarations were not read, or not to their end.
-    suspects: BTreeSet<&'i str>,
-    /// Names that may have grown together with the words before them.
-    grown: BTreeSet<&'i str>,
-    /// Names that were set, perhaps in a declaration whose first word is missing.
-    set: BTreeSet<&'i str>,
-    /// Whether any name may have been declared in what was not read.
+    /// Where they stand, and where the errors of the parser are; ascending.
+    spans: Vec<Span>,
+    errors: Vec<Span>,
+    /// All their words, and those that may be the names of what they declare.
+    words: BTreeSet<&'i str>,
+    names: BTreeSet<&'i str>,
+    /// Whether any name may have been declared: items may stand in the wrong blocks, or a name is missing.
     any_name: bool,
-    /// Whether moves, parts of the scene, or what the clock comes of were not read.
+    /// Whether moves, parts of the scene, or what the clock comes of are among them.
     moves: bool,
     scenery: bool,
     clock: bool,
-    /// Whether a setting, or a field, may have been among it.
+    /// Whether a setting, or a field, may be among them.
     settings: bool,
     fields: bool,
     /// Kinds: what each starts from, and where its name is.
     kinds: BTreeMap<&'i str, (&'i str, Span)>,
-    /// Sources with errors, and the lines that say no more since they could not be read.
+    /// Where the horizon and the step are written.
+    times: Vec<Span>,
+    /// Sources with errors.
     with_errors: BTreeSet<SourceId>,
-    derailed: BTreeMap<(SourceId, usize), Vec<Span>>,
-    /// All lines with an error.
-    faulty: BTreeSet<(SourceId, usize)>,
 }
 
 impl<'i> Broken<'i> {
     pub(super) fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
-        let files = input.properties.iter();
-        let broken = input.scenario.broken.iter().chain(files.flat_map(|file| &file.broken));
-        let swallowed = broken.clone().flat_map(|item| &item.words).map(String::as_str).collect();
-        let mut doubts: Vec<Span> = broken.map(|item| item.span).collect();
-        doubts.sort_unstable();
-        let lost = doubts.iter();
+        let errors = said.iter().filter(|one| one.severity == Severity::Error);
+        let mut errors: Vec<Span> = errors.filter_map(|one| Some(one.place.as_ref()?.span)).collect();
+        errors.sort_unstable();
+        let times = input.scenario.items.iter().filter_map(|item| match item {
+            Item::Setting { name, value } if TIMES.contains(&name.name.as_str()) => Some(value.span),
+            _ => None,
+        });
         let mut broken = Self {
             sources: input.sources,
-            lost: Parts::of(lost.clone().copied()),
-            skipped: Parts::of(lost.clone().copied()),
-            swallowed,
-            suspects: BTreeSet::new(),
-            grown: BTreeSet::new(),
-            set: BTreeSet::new(),
-            any_name: false,
+            spans: Vec::new(),
+            words: BTreeSet::new(),
+            names: BTreeSet::new(),
+            any_name: input.scenario.is_torn || input.properties.iter().any(|file| file.is_torn),
             moves: false,
             scenery: false,
-            clock: false,
+            clock: input.scenario.is_torn,
             settings: false,
             fields: false,
             kinds: input.scenario.items.iter().filter_map(kind_of).collect(),
-            with_errors: BTreeSet::new(),
-            derailed: BTreeMap::new(),
-            faulty: BTreeSet::new(),
+            with_errors: errors.iter().map(|place| place.source).collect(),
+            times: times.collect(),
+            errors,
         };
-        let mut texts: Vec<Span> = Vec::new();
-        for one in said.iter().filter(|one| one.severity == Severity::Error) {
-            let Some(place) = &one.place else { continue };
-            broken.with_errors.insert(place.span.source);
-            broken.faulty.extend(broken.line_of(place.span));
-            broken.swallow(one, place.span);
-            broken.grown.extend(grown(word(input.sources, place.span).unwrap_or_default()));
-            // What stands first in its line is missed by the one before, but for a bracket.
-            let derails =
-                DERAILS.contains(&one.code) && !broken.starts_line(place.span) && !broken.was_mended(one);
-            if derails || BRACKETS.contains(&one.code) {
-                broken.derail(place.span, &doubts);
-                texts.extend(lines(input.sources, place.span));
-            }
+        for item in input.scenario.broken.iter().chain(input.properties.iter().flat_map(|file| &file.broken))
+        {
+            broken.add(item);
         }
-        // Of texts that start alike the longest says all: each of thousands of errors on a line has that line.
-        texts.extend(lost);
-        texts.sort_by_key(|span| (span.source, span.start, Reverse(span.end)));
-        texts.dedup_by_key(|span| (span.source, span.start));
-        for span in texts {
-            broken.add(span, word(input.sources, span).unwrap_or_default());
-        }
+        broken.spans.sort_unstable();
         // Of a scenario without times in seconds the processes decide which clock it has.
         broken.clock &= !is_stepped(input.scenario);
         broken
     }
 
-    /// Notes the names that an error of brackets or comments makes unreliable. Where braces did not pair up, declarations may
-    /// be in the wrong block, and the name on a line with wrong brackets may be misspelt. A query declares nothing.
-    fn swallow(&mut self, one: &Diagnostic, place: Span) {
-        let bracket = BRACKETS.contains(&one.code) && place.source == SourceId(0);
-        let braces = one.title.contains("`{`") || one.title.contains("`}`");
-        let line = lines(self.sources, place).and_then(|line| word(self.sources, line));
-        let (first, rest) = leading_word(line.unwrap_or_default());
-        let declares = BRACKETS.contains(&one.code) && DECLARES.contains(&first) && !is_named(first, rest);
-        let displaces = bracket && braces && !(one.code == STRAY && self.is_over(place));
-        self.any_name |= displaces || declares || one.code == TOO_DEEP;
-        self.clock |= bracket;
-        if one.code == COMMENT
-            && let Some(source) = self.sources.iter().find(|source| source.id == place.source)
-        {
-            self.swallowed.extend(words(&source.text[place.start as usize..]));
-        }
-    }
-
-    /// A text that was not read, or not to its end.
-    fn add(&mut self, span: Span, text: &'i str) {
-        let source = span.source;
-        // Something else may stand in the place of the first word.
-        let text = text.trim_start_matches(|c: char| !starts_name(c));
-        let (first, rest) = leading_word(text);
-        let (second, _) = leading_word(rest);
-        self.moves |= ["moves", "heading", "route", "stop"].iter().any(|word| has_word(text, word));
-        self.scenery |= SCENERY.contains(&first);
-        let times = !TIMELESS.contains(&first) || TIMES.iter().any(|word| has_word(text, word));
-        self.clock |= source == SourceId(0) && times;
-        // A word that starts no declaration may be a misspelt name of either.
-        let is_declared = DECLARES.contains(&first) || NAMELESS.contains(&first) || first == "scenario";
-        let sets = || ["horizon", "step"].iter().any(|word| has_word(text, word));
-        // Of a field whose value alone could not be read the name was.
-        let is_field = rest.trim() == "=" && self.is_in_block(span);
-        self.settings |= source == SourceId(0) && (!is_declared && !is_field || sets());
-        let has_fields =
-            ["agent", "agents", "group", "kind", "source"].contains(&first) && text.contains('{');
-        self.fields |= source == SourceId(0) && (!is_declared || has_fields);
-        self.grown.extend(grown(first));
-        if DECLARES.contains(&first) {
-            // A wall may have no name.
-            let nameless = first == "wall" && rest.trim_start().starts_with('(');
-            self.any_name |= second.is_empty() && !nameless;
-            self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
-        } else if rest.trim_start().starts_with('=') {
-            self.set.insert(first);
-        } else if !NAMELESS.contains(&first) {
+    fn add(&mut self, item: &'i ast::Broken) {
+        let words = || item.words.iter().map(String::as_str);
+        let has = |word: &str| words().any(|own| own == word);
+        let first = words().next().unwrap_or_default();
+        // A keyword in another part than its own is a name like any other.
+        let begins = keyword(first).filter(|keyword| keyword.begins.contains(&item.place));
+        self.spans.push(item.span);
+        self.words.extend(words());
+        self.words.extend(words().flat_map(grown));
+        match begins.map(|keyword| keyword.declares) {
+            Some(Declares::Nothing) => {}
+            Some(_) => {
+                // A wall may have no name.
+                self.any_name |= item.name.is_none() && first != "wall";
+                self.names.extend(item.name.as_deref());
+            }
             // The first word is misspelt, and a name follows, or it is missing.
-            self.suspects.extend([first, second].into_iter().filter(|name| !name.is_empty()));
+            None => self.names.extend(words().next().into_iter().chain(item.name.as_deref())),
         }
+        self.moves |= item.place == Place::Moves || has("moves");
+        self.scenery |= item.place == Place::Scene || first == "scene";
+        let of_file = item.place == Place::Scenario;
+        let is_timeless = begins.is_some_and(|keyword| keyword.declares != Declares::Nothing);
+        self.clock |= item.span.source == SourceId(0) && (!is_timeless || TIMES.iter().any(|word| has(word)));
+        self.settings |= of_file && begins.is_none() || has("horizon") || has("step");
+        self.fields |=
+            item.place == Place::Fields || of_file && (begins.is_none() || BODIES.contains(&first));
     }
 
-    /// Whether the parser took what stands there as it is meant: `==` for `=`.
-    fn was_mended(&self, one: &Diagnostic) -> bool {
-        one.code == EQUALS && !one.place.as_ref().is_some_and(|place| self.skipped.hold(place.span))
-    }
-
-    fn is_broken(&self, source: SourceId) -> bool {
+    fn fails(&self, source: SourceId) -> bool {
         self.with_errors.contains(&source)
     }
 
-    /// Whether a place is the first of its line.
-    fn starts_line(&self, span: Span) -> bool {
-        let line = lines(self.sources, span).map_or(span.start, |line| line.start);
-        let before = word(self.sources, Span { start: line, end: span.start, ..span });
-        before.unwrap_or_default().trim().is_empty()
+    /// Whether a broken item, or an error of the parser, meets a place.
+    fn meets(&self, place: Span) -> bool {
+        let is_within = |spans: &[Span]| {
+            let from = spans.partition_point(|span| (span.source, span.start) < (place.source, place.start));
+            spans.get(from).is_some_and(|span| span.source == place.source && span.start < place.end)
+        };
+        is_within(&self.spans) || is_within(&self.errors) || self.hold(place)
     }
 
-    /// Whether a brace that closes nothing is just one too many: one that starts a line may stand for a word.
-    fn is_over(&self, place: Span) -> bool {
-        let line = lines(self.sources, place).map_or(place.end, |line| line.end);
-        let behind = word(self.sources, Span { start: place.end, end: line, ..place });
-        !self.starts_line(place) || behind.unwrap_or_default().trim().is_empty()
+    /// Whether a place lies in a broken item. Few of them hold others.
+    fn hold(&self, place: Span) -> bool {
+        let before =
+            self.spans.partition_point(|span| (span.source, span.start) <= (place.source, place.start));
+        let near = self.spans[..before].iter().rev().take(MOST_AROUND);
+        near.take_while(|span| span.source == place.source).any(|span| place.start < span.end)
     }
 
-    /// The line in which a place starts.
-    fn line_of(&self, span: Span) -> Option<(SourceId, usize)> {
-        let source = self.sources.iter().find(|source| source.id == span.source)?;
-        Some((span.source, source.line(span.start)))
-    }
-
-    /// The name that is set to what stands at a place: `density = 0.2 /m^2`.
-    fn set_by(&self, place: Span) -> Option<&'i str> {
-        let before = word(self.sources, Span { start: 0, end: place.start, ..place })?;
-        words(before.trim_end().strip_suffix('=')?).next_back()
-    }
-
-    /// Whether some line of a place has an error.
-    fn covers_an_error(&self, place: Span) -> bool {
-        let end = Span { start: place.end, ..place };
-        let (Some(first), Some(last)) = (self.line_of(place), self.line_of(end)) else { return false };
-        self.faulty.range(first..=last).next().is_some()
-    }
-
-    /// Whether a name may have been declared where it stands in what was skipped.
+    /// Whether a name may have been declared where it stands in what could not be read.
     fn may_declare(&self, place: Span) -> bool {
         let Some(text) = word(self.sources, place) else { return true };
         let (name, _) = leading_word(bare(text));
-        self.any_name
-            || self.suspects.contains(name)
-            || self.grown.contains(name)
-            || self.set.contains(name)
-            || self.swallowed.contains(name)
-            || name.is_empty() && !self.lost.0.is_empty()
+        // Of a name that grew together with the sign behind it, `nin 0 .. 3` for `n: 0 .. 3`, the first part is missed.
+        let is_longer = || {
+            let longer = self.names.range(name..).next();
+            longer.is_some_and(|longer| longer.starts_with(name))
+        };
+        self.any_name || self.words.contains(name) || !self.names.is_empty() && is_longer()
     }
 
     /// Whether something in the block behind a name could not be read.
     fn is_torn_behind(&self, place: Span) -> bool {
         let source = self.sources.iter().find(|source| source.id == place.source);
         let behind = source.and_then(|source| source.text.get(place.end as usize..)).unwrap_or_default();
-        let block = Span { end: place.end.saturating_add(block_end(behind) as u32), ..place };
-        self.any_name
-            || self.lost.some_within(block)
-            || self.skipped.some_within(block)
-            || self.skipped.hold(place)
-    }
-
-    /// The part of its line that an error makes unreliable: everything except what the parser is sure of.
-    fn derail(&mut self, place: Span, doubts: &[Span]) {
-        let (Some(line), Some(key)) = (lines(self.sources, place), self.line_of(place)) else { return };
-        let before =
-            doubts.partition_point(|doubt| (doubt.source, doubt.start) <= (place.source, place.start));
-        let holds = |doubt: &Span| doubt.source == place.source && place.start <= doubt.end;
-        if !doubts[..before].last().is_some_and(holds) {
-            self.derailed.insert(key, vec![line]);
-            return;
-        }
-        self.derailed.entry(key).or_insert_with(|| {
-            let first =
-                doubts.partition_point(|doubt| (doubt.source, doubt.end) <= (line.source, line.start));
-            let is_here = |doubt: &&Span| doubt.source == line.source && doubt.start < line.end;
-            doubts[first..].iter().take_while(is_here).copied().collect()
-        });
-    }
-
-    /// Whether a place stands where a line is in doubt.
-    fn is_derailed(&self, place: Span) -> bool {
-        let Some(doubts) = self.line_of(place).and_then(|line| self.derailed.get(&line)) else {
-            return false;
-        };
-        // They are in order and apart.
-        let before = doubts.partition_point(|doubt| doubt.start <= place.end);
-        doubts[..before].last().is_some_and(|doubt| place.start < doubt.end)
-    }
-
-    /// Whether a place stands in braces.
-    fn is_in_block(&self, place: Span) -> bool {
-        let before = word(self.sources, Span { start: 0, end: place.start, ..place }).unwrap_or_default();
-        before.matches('{').count() > before.matches('}').count()
+        let end = place.end.saturating_add(block_end(behind) as u32);
+        self.any_name || self.meets(Span { end, ..place })
     }
 
     /// Whether a kind, and all that it starts from, were read to their ends.
@@ -367,23 +182,20 @@ impl<'i> Broken<'i> {
         false
     }
 
+    /// Whether an error of compilation follows from nothing that could not be read.
     pub(super) fn is_own(&self, one: &Diagnostic) -> bool {
-        let scenario = self.is_broken(SourceId(0));
+        let scenario = self.fails(SourceId(0));
         let Some(place) = one.place.as_ref().map(|place| place.span) else {
             return !(scenario && NAMES.contains(&one.code));
         };
-        if !scenario && !self.is_broken(place.source) {
+        if !scenario && !self.fails(place.source) {
             return true;
         }
         let text = word(self.sources, place).unwrap_or_default();
-        // A line that could not be read says no more.
-        let of_line = self.is_derailed(place);
         let of_clock = self.clock
             && (CLOCKS.contains(&one.code)
-                || one.code == DIMENSION
-                    && (one.title.contains("(steps)")
-                        || matches!(self.set_by(place), Some("horizon" | "step"))));
-        let of_options = one.code == NO_OPTIONS && self.lost.some_within(place);
+                || one.code == DIMENSION && (one.title.contains("(steps)") || self.times.contains(&place)));
+        let of_options = one.code == NO_OPTIONS && self.meets(place);
         let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
         // With barriers that were not read there is less room for many, not more.
         let is_crowd = one.title.contains(CROWDED);
@@ -401,32 +213,20 @@ impl<'i> Broken<'i> {
         let of_name = !alone
             && NAMES.contains(&one.code)
             && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
-        // Beside a part that could not be read, what reads as a name may be the rest of a unit.
-        let is_faulty = || self.line_of(place).is_some_and(|line| self.faulty.contains(&line));
-        let unit = UNKNOWN.contains(&one.code) && dimension::unit(text).is_some() && is_faulty();
-        // Of a name that grew together with the sign behind it, `nin 0 .. 3` for `n: 0 .. 3`, its line misses the first part.
-        let name = leading_word(bare(text)).0;
-        let of_longer = UNKNOWN.contains(&one.code)
-            && self.line_of(place).is_some_and(|line| self.derailed.contains_key(&line))
-            && !name.is_empty()
-            && self.suspects.range(name..).next().is_some_and(|suspect| suspect.starts_with(name));
-        // What is at a name, not what stands beside it.
-        let of_suspect = (one.code.is_of("E03") || one.code.is_of("E09") || UNKNOWN.contains(&one.code))
-            && (words(text).any(|name| self.suspects.contains(name))
-                || self.set_by(place).is_some_and(|name| self.suspects.contains(name)));
+        let of_suspect = (one.code.is_of("E03") || one.code.is_of("E09"))
+            && words(text).any(|name| self.names.contains(name));
         // A command of several lines is judged as a whole.
-        let of_part = one.code.is_of("E09") && self.covers_an_error(place);
-        !(of_clock
+        let of_part = one.code.is_of("E09") && self.meets(place);
+        let of_item = self.hold(place);
+        !(of_item
+            || of_clock
             || of_options
             || of_moves
             || of_scenery
             || of_bodies
-            || of_longer
             || of_name
             || of_suspect
-            || of_part
-            || of_line
-            || unit)
+            || of_part)
     }
 }
 
@@ -440,16 +240,10 @@ fn kind_of(item: &Item) -> Option<(&str, (&str, Span))> {
 /// The names that a word may have had behind it before it grew together with them: `n` of `varn`.
 pub(super) fn grown(text: &str) -> impl Iterator<Item = &str> {
     let (first, _) = leading_word(text);
-    let is_whole = DECLARES.contains(&first) || NAMELESS.contains(&first);
-    let keywords = DECLARES.iter().filter(move |_| !is_whole);
-    keywords
-        .filter_map(move |keyword| first.strip_prefix(keyword))
+    let declaring = KEYWORDS.iter().filter(|keyword| keyword.declares != Declares::Nothing);
+    let is_whole = keyword(first).is_some();
+    declaring
+        .filter(move |_| !is_whole)
+        .filter_map(move |keyword| first.strip_prefix(keyword.word))
         .filter(|name| name.starts_with(starts_name))
-}
-
-/// Whether what follows the first word of a declaration is its name, whole.
-fn is_named(first: &str, rest: &str) -> bool {
-    let (name, after) = leading_word(rest);
-    let after = after.trim_start();
-    !name.is_empty() && (after.starts_with(AFTER_NAME) || first == "let" && after.starts_with('('))
 }

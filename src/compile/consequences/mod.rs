@@ -269,26 +269,10 @@ pub(super) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
     text.split(|c: char| !continues_name(c)).filter(|word| !word.is_empty())
 }
 
-/// The lines of a place.
-fn lines(sources: &[Source], span: Span) -> Option<Span> {
-    let source = sources.iter().find(|source| source.id == span.source)?;
-    Some(Span { start: source.line_start(span.start), end: source.line_end(span.end), ..span })
-}
-
 /// The text of a place.
 fn word(sources: &[Source], span: Span) -> Option<&str> {
     let source = sources.iter().find(|source| source.id == span.source)?;
     source.text.get(span.start as usize..span.end as usize)
-}
-
-/// Whether a name stands in a text as a word of its own.
-fn has_word(text: &str, name: &str) -> bool {
-    let inside = |c: Option<char>| c.is_some_and(continues_name);
-    let name = name.trim();
-    name.is_empty()
-        || text.match_indices(name).any(|(at, _)| {
-            !inside(text[..at].chars().next_back()) && !inside(text[at + name.len()..].chars().next())
-        })
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ pub mod process;
 pub mod property;
 pub mod scenario;
 
+use crate::syntax::keywords::Place;
 use crate::syntax::source::Span;
 
 /// An item that could not be read.
@@ -12,6 +13,10 @@ use crate::syntax::source::Span;
 pub struct Broken {
     /// Where.
     pub span: Span,
+    /// The part of the file that it stands in.
+    pub place: Place,
+    /// The name behind its first word, where one stands there.
+    pub name: Option<String>,
     /// Its words, among them the names that it may declare.
     pub words: Vec<String>,
 }

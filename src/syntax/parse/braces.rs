@@ -9,7 +9,10 @@
 use super::code;
 use super::fault::{quote, starts_declaration};
 use super::layout::Token;
+use super::lexeme::starts_name;
+use crate::syntax::ast::Broken;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::keywords::Place;
 use crate::syntax::source::{Source, Span};
 use std::ops::Range;
 
@@ -244,6 +247,26 @@ impl<'s, 't> Text<'s, 't> {
         }
     }
 
+    /// The lines of some errors: what stands there may have been meant otherwise.
+    fn lines_of(&self, errors: &[Diagnostic]) -> Vec<Broken> {
+        let places = errors.iter().flat_map(|one| one.place.iter().chain(&one.related));
+        places
+            .map(|label| {
+                let (start, end) =
+                    (self.source.line_start(label.span.start), self.source.line_end(label.span.start));
+                let here =
+                    self.tokens.iter().filter(|token| (start as usize..end as usize).contains(&token.at));
+                let words = here.map(|token| token.text).filter(|text| text.starts_with(starts_name));
+                Broken {
+                    span: Span { start, end, ..label.span },
+                    place: Place::Other,
+                    name: None,
+                    words: words.map(str::to_owned).collect(),
+                }
+            })
+            .collect()
+    }
+
     /// The one brace that is turned the wrong way, if turning it leaves the layout right: such a brace is two too many.
     fn turned(&self) -> Option<Slip> {
         let count = |mark: &str| self.tokens.iter().filter(|token| token.text == mark).count() as isize;
@@ -260,10 +283,21 @@ impl<'s, 't> Text<'s, 't> {
     }
 }
 
-/// Mends tokens whose braces do not pair up, and says what was wrong.
-pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>) -> Vec<Diagnostic> {
+/// Braces that do not pair up.
+#[derive(Default)]
+pub(super) struct Mended {
+    /// What was wrong.
+    pub(super) slips: Vec<Diagnostic>,
+    /// The lines on which it was.
+    pub(super) lines: Vec<Broken>,
+    /// Whether the layout is no help, so that items may stand in the wrong blocks.
+    pub(super) is_torn: bool,
+}
+
+/// Mends tokens whose braces do not pair up.
+pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>) -> Mended {
     if pairs_up(tokens) {
-        return Vec::new();
+        return Mended::default();
     }
     let text = Text::of(source, tokens);
     let mut ways: Vec<Vec<Slip>> = text.turned().into_iter().map(|turned| vec![turned]).collect();
@@ -271,10 +305,11 @@ pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>) -> Vec<Diagnost
     ways.retain(|slips| slips.len() <= MOST_SLIPS && pairs_up(&text.mended(slips)));
     // On a tie, what closes within a line is the slip.
     if let Some(slips) = ways.into_iter().min_by_key(Vec::len) {
-        let errors = slips.iter().map(|slip| text.error(*slip)).collect();
+        let slips_said: Vec<Diagnostic> = slips.iter().map(|slip| text.error(*slip)).collect();
+        let lines = text.lines_of(&slips_said);
         let mended = text.mended(&slips);
         *tokens = mended;
-        return errors;
+        return Mended { slips: slips_said, lines, is_torn: false };
     }
     // The layout is no help: braces that close nothing are errors, and the first that is not closed.
     let (mut open, mut stray) = (Vec::new(), Vec::new());
@@ -292,7 +327,7 @@ pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>) -> Vec<Diagnost
     let errors = slips.iter().take(told).map(|slip| text.error(*slip)).collect();
     let mended = text.mended(&slips);
     *tokens = mended;
-    errors
+    Mended { slips: errors, lines: Vec::new(), is_torn: true }
 }
 
 /// What the grammar says of a mended text, and what was wrong with its braces. On the lines of a brace that lacks its

@@ -8,7 +8,7 @@ use super::grammar::{Grammar, Rule};
 use super::layout::{Item, Layout, Token};
 use crate::syntax::ast::{Broken, Ident, Text};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::keywords::{Declares, keyword};
+use crate::syntax::keywords::{Declares, Place, keyword};
 use crate::syntax::source::{Source, Span};
 use pest::Parser;
 use std::cell::OnceCell;
@@ -55,6 +55,21 @@ pub(in crate::syntax) fn inner(rule: Rule) -> Rule {
         Rule::on => Rule::line_of_answers,
         Rule::answers => Rule::line_of_choices,
         _ => Rule::line_of_fields,
+    }
+}
+
+/// The part of a file whose items a rule takes.
+fn part(rule: Rule) -> Place {
+    match rule {
+        Rule::line_of_scenario => Place::Scenario,
+        Rule::line_of_properties => Place::Properties,
+        Rule::line_of_scene => Place::Scene,
+        Rule::line_of_process => Place::Process,
+        Rule::line_of_behaviour => Place::Behaviour,
+        Rule::line_of_state => Place::State,
+        Rule::line_of_moves => Place::Moves,
+        Rule::line_of_fields => Place::Fields,
+        _ => Place::Other,
     }
 }
 
@@ -169,20 +184,20 @@ impl<'s> Builder<'s> {
                         foreign_end = items.iter().rposition(is_end).map_or(foreign_end, |end| end + 1);
                     }
                     if is_piece {
-                        self.lose(item);
+                        self.lose(item, rule, self.whole(item));
                         continue;
                     }
                     self.say(refusal.diagnostic);
                     text = self.with_broken_value();
                     let Ok(taken) = Grammar::parse(rule, &text) else {
                         is_broken = true;
-                        self.lose(item);
+                        self.lose(item, rule, self.whole(item));
                         continue;
                     };
                     // Its head stands for it.
                     let head = &text[..text.len() - BROKEN.len_utf8()];
-                    let words = self.layout.words(item).map(str::to_owned).collect();
-                    self.broken.push(Broken { span: self.at(0..head.len()), words });
+                    let span = self.at(0..head.len());
+                    self.lose(item, rule, span);
                     taken
                 }
             };
@@ -192,7 +207,7 @@ impl<'s> Builder<'s> {
                 if let Some(part) = line.into_inner().next() {
                     match build(self, part) {
                         Some(one) => built.push(one),
-                        None => self.lose(item),
+                        None => self.lose(item, rule, self.whole(item)),
                     }
                 }
             }
@@ -281,11 +296,17 @@ impl<'s> Builder<'s> {
         self.diagnostics.push(diagnostic);
     }
 
-    /// Notes an item that could not be read or made.
-    fn lose(&mut self, item: &Item) {
+    /// The place of an item.
+    fn whole(&self, item: &Item) -> Span {
         let bytes = self.layout.bytes(item);
-        let span = Span::new(self.source.id, bytes.start, bytes.end);
-        self.broken.push(Broken { span, words: self.layout.words(item).map(str::to_owned).collect() });
+        Span::new(self.source.id, bytes.start, bytes.end)
+    }
+
+    /// Notes an item that could not be read or made; its head stands for it where that could.
+    fn lose(&mut self, item: &Item, rule: Rule, span: Span) {
+        let words = self.layout.words(item).map(str::to_owned).collect();
+        let name = self.layout.second_word(item).map(str::to_owned);
+        self.broken.push(Broken { span, place: part(rule), name, words });
     }
 
     /// The item at hand with a mark for what stands behind its first sign of equality: so its name is known.

@@ -130,6 +130,12 @@ impl<'t> Layout<'t> {
         own.filter(|token| token.starts_with(lexeme::starts_name))
     }
 
+    /// The second token of an item, if it is a word.
+    pub(in crate::syntax) fn second_word(&self, item: &Item) -> Option<&'t str> {
+        let second = self.tokens[item.tokens.clone()].get(1)?.text;
+        second.starts_with(lexeme::starts_name).then_some(second)
+    }
+
     /// An item with blanks for what is no token and for what stands in its blocks, each token as far from the start as in
     /// the text.
     pub(in crate::syntax) fn plain(&self, item: &Item) -> String {

@@ -103,12 +103,13 @@ fn parse<T>(
     if let Some(too_deep) = nesting::depth(source, &tokens) {
         return (None, true, vec![too_deep]);
     }
-    let slips = braces::mend(source, &mut tokens);
-    let is_torn = open_comment.is_some() || !slips.is_empty();
+    let mended = braces::mend(source, &mut tokens);
+    let is_torn = open_comment.is_some() || mended.is_torn;
     let layout = Layout::of(&source.text, tokens, in_properties);
     let mut builder = Builder::of(source, &layout, in_properties, unit);
+    builder.broken = mended.lines;
     let built = build(&mut builder);
-    let mut said = braces::together(source, builder.diagnostics, slips);
+    let mut said = braces::together(source, builder.diagnostics, mended.slips);
     if let Some((_, unclosed)) = open_comment {
         // An error at the end of a text that was cut there is a consequence of the cut.
         let last = layout.tokens.last().map_or(0, |last| last.at) as u32;
