@@ -31,6 +31,10 @@
 //! [`Draft`] sets parameters and gives files. `examples/` has programs that sweep a parameter, write trajectories, and
 //! drive agents by rules of their own. The modules below are for those who need more; their items may change.
 
+// First, since its macro `error!` is used above.
+#[macro_use]
+pub mod syntax;
+
 pub mod advise;
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -40,7 +44,6 @@ pub mod library;
 pub mod perception;
 pub mod replay;
 pub mod report;
-pub mod syntax;
 
 pub use smc_core::{base, data, gait, kernel, logic, model, route, stats, trials};
 

@@ -40,7 +40,7 @@ pub fn role(file: &ScenarioFile) -> Result<Role, Diagnostic> {
         _ => {
             let said = format!("`{}` is in no tracks and cannot be advised", moves.agent.name);
             let hint = "declare the agent from tracks: `agent user: adult from here at 0 s id 1`";
-            Err(Diagnostic::error(Code::E0406, moves.agent.span, said).hint(hint))
+            Err(error!(E0406, moves.agent.span, "{said}"; hint: "{hint}"))
         }
     }
 }
@@ -52,13 +52,13 @@ fn of(moves: &MovesDecl, recorded: &Recorded) -> Result<Role, Diagnostic> {
             Some(person) => Ok(Role { tracks, person, is_group: one.is_group }),
             None => {
                 let said = "the id of the person who is advised must be written as a number";
-                Err(Diagnostic::error(Code::E0406, one.id.span, said).hint("write for example `id 367`"))
+                Err(error!(E0406, one.id.span, "{said}"; hint: "write for example `id 367`"))
             }
         },
         _ => {
             let said = format!("`{}` does not name one person", moves.agent.name);
             let hint = "write `id 367` or `group of 367` behind the time";
-            Err(Diagnostic::error(Code::E0406, recorded.span, said).hint(hint))
+            Err(error!(E0406, recorded.span, "{said}"; hint: "{hint}"))
         }
     }
 }

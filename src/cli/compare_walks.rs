@@ -11,7 +11,6 @@ use crate::data::walks::{Walk, read_walks};
 use crate::gait::compare::{compare, has_pairs};
 use crate::report::ExitCode as Exit;
 use crate::report::walks::{self, WalkSet};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::decode;
 use crate::syntax::source::{Source, SourceId, Span};
@@ -53,7 +52,7 @@ fn answer(arguments: &CompareWalks, sources: &mut Vec<Source>) -> Result<(), Vec
         let without = usize::from(first[0].leg.is_some());
         let title = format!("`{}` has no column `leg`, but the other table has", sources[without].name);
         let hint = "add the column, or remove it from the other table";
-        return Err(Diagnostic::error(Code::E0708, header(&sources[without]), title).hint(hint).into());
+        return Err(error!(E0708, header(&sources[without]), "{title}"; hint: "{hint}").into());
     }
     if arguments.paired && !has_pairs(&first, &second) {
         let hint = "give walks that belong together one name in both tables, or remove `--paired`";
@@ -87,9 +86,10 @@ fn read(file: &str, sources: &mut Vec<Source>) -> Result<Vec<Walk>, Vec<Diagnost
         }
     };
     let walks = read_walks(&source.text).map_err(|errors| {
-        let shown = errors.iter().take(SHOWN).map(|error| {
-            Diagnostic::error(Code::E0708, span(&source, error), error.message.clone()).hint(HINT)
-        });
+        let shown = errors
+            .iter()
+            .take(SHOWN)
+            .map(|error| error!(E0708, span(&source, error), "{}", error.message.clone()).hint(HINT));
         shown.collect()
     });
     sources.push(source);

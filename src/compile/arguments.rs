@@ -10,7 +10,6 @@ use super::nearest::nearest;
 use crate::stats::spec::{Argument, Kind};
 use crate::stats::{Chosen, Spec};
 use crate::syntax::ast::{Clauses, Method};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -62,10 +61,9 @@ impl Elaborator<'_> {
                 let known = format!("its arguments are {}", names.join(", "));
                 let hint = nearest(&argument.name.name, names.iter().copied())
                     .map_or(known, |n| format!("did you mean `{n}`?"));
-                let error = Diagnostic::error(
-                    Code::E0604,
-                    argument.name.span,
-                    format!("`{}` has no argument `{}`", method.name.name, argument.name.name),
+                let error = error!(
+                    E0604,
+                    argument.name.span, "`{}` has no argument `{}`", method.name.name, argument.name.name
                 );
                 self.note(error.formal().hint(hint));
                 let _ = self.number(&argument.value, locals);
@@ -76,14 +74,14 @@ impl Elaborator<'_> {
                 && first.name.span != argument.name.span
             {
                 let text = format!("`{}` is given twice", argument.name.name);
-                let error = Diagnostic::error(Code::E0604, argument.name.span, text);
+                let error = error!(E0604, argument.name.span, "{text}");
                 self.note(error.formal().related(first.name.span, "first given here"));
                 failed = true;
                 continue;
             }
             if let Some(clause) = clauses.confidence.as_ref().filter(|_| known[at].is_error()) {
                 let text = format!("the error is given twice: by `confidence` and by `{}`", names[at]);
-                let error = Diagnostic::error(Code::E0604, argument.name.span, text);
+                let error = error!(E0604, argument.name.span, "{text}");
                 self.note(error.formal().related(clause.span, "given here"));
                 failed = true;
                 continue;
@@ -150,7 +148,7 @@ impl Elaborator<'_> {
             return Ok(epsilon);
         }
         let said = format!("the relative error must be between 0.0001 and 0.999 (got {epsilon})");
-        self.report(Diagnostic::error(Code::E0604, span, said))
+        self.report(error!(E0604, span, "{said}"))
     }
 
     /// A number of trials that is fixed beforehand.
@@ -161,7 +159,7 @@ impl Elaborator<'_> {
             return Ok(trials);
         }
         let said = format!("`trials` must be a whole number from 1 to {most:e} (got {trials})");
-        self.report(Diagnostic::error(Code::E0604, span, said))
+        self.report(error!(E0604, span, "{said}"))
     }
 
     /// The indifference around a threshold; its region must lie inside (0, 1).
@@ -174,26 +172,20 @@ impl Elaborator<'_> {
     ) -> Lowered<f64> {
         let (indifference, span) = self.needed(arguments.values[at], arguments, "indifference")?;
         if indifference <= 0.0 {
-            let error = Diagnostic::error(
-                Code::E0602,
-                span,
-                format!("`indifference` must be positive (got {indifference})"),
-            );
-            return self.report(error.hint("remove the region: the default test needs none"));
+            return self.report(error!(E0602, span, "`indifference` must be positive (got {indifference})";
+                hint: "remove the region: the default test needs none"));
         }
         // Around what is no threshold nothing is asked of it.
         if let Some(Theta { value: Some(theta), at, noun }) = theta {
             let (low, high) = (theta - indifference, theta + indifference);
             if !(low > 0.0 && high < 1.0 && low < theta && theta < high) {
                 let round = |x: f64| (x * 1e12).round() / 1e12;
-                let error = Diagnostic::error(
-                    Code::E0602,
+                let error = error!(
+                    E0602,
                     span,
-                    format!(
-                        "the indifference region {} to {} must be inside (0, 1)",
-                        round(low),
-                        round(high)
-                    ),
+                    "the indifference region {} to {} must be inside (0, 1)",
+                    round(low),
+                    round(high)
                 )
                 .hanging_on(at)
                 .related(at, format!("around this {noun}"))
@@ -204,8 +196,8 @@ impl Elaborator<'_> {
         if indifference < least {
             let name = &arguments.method.name.name;
             let said = format!("`indifference` must be at least {least} with `{name}` (got {indifference})");
-            let error = Diagnostic::error(Code::E0604, span, said);
-            return self.report(error.hint("`sprt` and the default test have no such limit"));
+            return self.report(error!(E0604, span, "{said}";
+                hint: "`sprt` and the default test have no such limit"));
         }
         Ok(indifference)
     }
@@ -226,7 +218,7 @@ impl Elaborator<'_> {
         }
         let (name, noun) = (argument.name, argument.kind.noun());
         let said = format!("`{name}` must be {noun} from {low} to {high} (got {value})");
-        let error = Diagnostic::error(Code::E0604, span, said);
+        let error = error!(E0604, span, "{said}");
         self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
     }
 
@@ -251,7 +243,7 @@ impl Elaborator<'_> {
         match (given, &clauses.within) {
             (Some((_, span)), Some(_)) => {
                 let said = "the width is given twice: by `within` and by `epsilon`";
-                self.report(Diagnostic::error(Code::E0604, span, said).formal())
+                self.report(error!(E0604, span, "{said}").formal())
             }
             (Some(found), None) => Ok(Some(found)),
             (None, _) => stated(clauses, within),
@@ -270,11 +262,7 @@ impl Elaborator<'_> {
             None if arguments.failed => Err(Reported),
             None => {
                 let method = arguments.method;
-                let error = Diagnostic::error(
-                    Code::E0604,
-                    method.span,
-                    format!("`{}` needs `{name}`", method.name.name),
-                );
+                let error = error!(E0604, method.span, "`{}` needs `{name}`", method.name.name);
                 self.report(error.formal())
             }
         }

@@ -10,7 +10,6 @@ use super::study::{Ask, Measure, MeasureKind, Target};
 use super::symbols::ScopeId;
 use crate::stats::procedures::MEAN_RUNNING;
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 impl<'a> Compiler<'a> {
@@ -38,7 +37,7 @@ impl<'a> Compiler<'a> {
                 .map(|stated| MEAN_RUNNING.with([allowance.error(stated, super::methods::DEFAULT_ALPHA)])),
             (What::Expectation, Some(method)) => {
                 let said = "a check of an expectation has only one procedure, without `by`";
-                elaborator.report(Diagnostic::error(Code::E0603, method.span, said))
+                elaborator.report(error!(E0603, method.span, "{said}"))
             }
             (What::Quantile, _) => {
                 let level = match &measure.kind {
@@ -91,7 +90,7 @@ impl<'a> Compiler<'a> {
         for binding in first.iter().chain(second) {
             if let Some(common) = clauses.under.iter().find(|common| common.name.name == binding.name.name) {
                 let text = format!("`{}` is set twice", binding.name.name);
-                let error = Diagnostic::error(Code::E0210, binding.name.span, text)
+                let error = error!(E0210, binding.name.span, "{text}")
                     .related(common.name.span, "set here for both sides")
                     .hint("remove one of them");
                 self.sites[site].elaborator.note(error);
@@ -118,8 +117,8 @@ impl<'a> Compiler<'a> {
         let allowance = Allowance { family, claims: 1 };
         let quantile = sketch.what == What::Quantile;
         let comparable = if quantile {
-            let error = Diagnostic::error(Code::E0607, measure.span, "`compare` does not accept quantiles")
-                .hint("compare `P(metric <= bound)`, or estimate both");
+            let error = error!(E0607, measure.span, "`compare` does not accept quantiles";
+                hint: "compare `P(metric <= bound)`, or estimate both");
             elaborator.report(error)
         } else {
             Ok(())
@@ -166,18 +165,14 @@ impl Elaborator<'_> {
                     "no number of trials can show that an event is certain or impossible; write `{sign} {near}`"
                 )
             };
-            let error = Diagnostic::error(
-                Code::E0601,
-                threshold.span,
-                format!("the threshold of a probability must be between 0 and 1 (got {theta})"),
-            );
-            return self.report(error.hint(hint));
+            return self.report(error!(E0601, threshold.span, "the threshold of a probability must be between 0 and 1 (got {theta})";
+                hint: "{hint}"));
         }
         if let Some(((low, high), range)) = sketch.range
             && (theta <= low || theta >= high)
         {
             let said = "the threshold is outside the range of the metric";
-            return self.report(Diagnostic::error(Code::E0601, threshold.span, said).hanging_on(range));
+            return self.report(error!(E0601, threshold.span, "{said}").hanging_on(range));
         }
         Ok(bound)
     }
@@ -204,6 +199,6 @@ pub(super) fn unlike(
     };
     let (first, second) = (side(kinds[0], &settings[0]), side(kinds[1], &settings[1]));
     let place = measure.range.as_ref().map_or(measure.span, |(low, high)| low.span.to(high.span));
-    Diagnostic::error(Code::E0605, place, format!("{need} the same range ({first}, {second})"))
-        .hint("write a range that depends on none of the parameters that differ")
+    error!(E0605, place, "{need} the same range ({first}, {second})";
+        hint: "write a range that depends on none of the parameters that differ")
 }

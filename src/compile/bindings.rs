@@ -5,8 +5,6 @@ use super::number::Number;
 use super::queries::{Compiler, Site};
 use super::symbols::{Meaning, ScopeId};
 use crate::syntax::ast::Binding;
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 
@@ -48,7 +46,7 @@ impl<'a> Compiler<'a> {
                 && first.name.span != binding.name.span
             {
                 let text = format!("`{}` is set twice", binding.name.name);
-                let error = Diagnostic::error(Code::E0210, binding.name.span, text);
+                let error = error!(E0210, binding.name.span, "{text}");
                 elaborator.note(error.related(first.name.span, "first set here"));
                 failed = true;
                 continue;

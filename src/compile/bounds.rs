@@ -4,7 +4,6 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
 use super::measures::{Sketch, What};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -25,11 +24,7 @@ impl Elaborator<'_> {
             None => Ok(default),
             Some((value, _)) if value > 0.0 && value < COIN => Ok(value),
             Some((value, span)) => {
-                let error = Diagnostic::error(
-                    Code::E0604,
-                    span,
-                    format!("`{name}` must be between 0 and 0.5 (got {value})"),
-                );
+                let error = error!(E0604, span, "`{name}` must be between 0 and 0.5 (got {value})");
                 let hint = if value >= COIN {
                     "an error probability of 0.5 or more carries no information; write for example 0.01 or 0.05"
                 } else {
@@ -50,11 +45,7 @@ impl Elaborator<'_> {
             // Without a range there is nothing to compare the width with.
             _ if epsilon > 0.0 || sketch.what == What::Quantile => return Ok(epsilon),
             _ => {
-                return self.report(Diagnostic::error(
-                    Code::E0604,
-                    at,
-                    format!("the width must be positive (got {epsilon})"),
-                ));
+                return self.report(error!(E0604, at, "the width must be positive (got {epsilon})"));
             }
         };
         let part = epsilon / range;
@@ -62,11 +53,7 @@ impl Elaborator<'_> {
             return Ok(epsilon);
         }
         if epsilon <= 0.0 {
-            return self.report(Diagnostic::error(
-                Code::E0604,
-                at,
-                format!("the width must be positive (got {epsilon})"),
-            ));
+            return self.report(error!(E0604, at, "the width must be positive (got {epsilon})"));
         }
         let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
         let (word, end, hint) = if part < NARROWEST {
@@ -76,7 +63,7 @@ impl Elaborator<'_> {
             ("at most", widest * range, "such a wide interval carries no information; write a smaller width")
         };
         let said = format!("the width must be {word} {end}{unit} (got {epsilon}{unit})");
-        let error = Diagnostic::error(Code::E0604, at, said).hint(hint);
+        let error = error!(E0604, at, "{said}"; hint: "{hint}");
         self.report(ranged.into_iter().fold(error, Diagnostic::hanging_on))
     }
 }

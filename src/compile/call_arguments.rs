@@ -5,7 +5,6 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::symbols::unknown;
 use crate::syntax::ast::{Binding, Expr, ExprKind, Ident, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 /// A number among the named arguments of a call.
 pub(super) struct Argument {
@@ -44,7 +43,7 @@ impl Elaborator<'_> {
             return Ok(found);
         }
         let said = format!("`{name}` must be `{}`", words.join("` or `"));
-        self.report(Diagnostic::error(Code::E0305, argument.value.span, said))
+        self.report(error!(E0305, argument.value.span, "{said}"))
     }
 
     /// The numbers among the arguments of a call; `others` are known names of other arguments.
@@ -62,7 +61,7 @@ impl Elaborator<'_> {
             let name = &argument.name;
             if all[..k].iter().any(|before| before.name.name == name.name) {
                 let said = format!("`{}` is given twice", name.name);
-                self.note(Diagnostic::error(Code::E0202, name.span, said));
+                self.note(error!(E0202, name.span, "{said}"));
                 failed = true;
             } else if let Some(at) = known.iter().position(|known| known.name == name.name) {
                 match self.number_among(&known[at], &argument.value, locals) {
@@ -95,11 +94,7 @@ impl Elaborator<'_> {
             (false, true) => format!("`{what}` must be positive and at most {high}{unit}"),
             (false, false) => format!("`{what}` must be from {low} to {high}{unit}"),
         };
-        self.report(Diagnostic::error(
-            Code::E0405,
-            value.span,
-            format!("{said} (got {}{unit})", number.value),
-        ))
+        self.report(error!(E0405, value.span, "{said} (got {}{unit})", number.value))
     }
 }
 

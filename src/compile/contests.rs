@@ -9,8 +9,6 @@ use crate::stats::procedures::BETTING;
 use crate::stats::spec::Serves;
 use crate::stats::{Chosen, Spec};
 use crate::syntax::ast::{Clauses, Method};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
@@ -25,7 +23,7 @@ impl Elaborator<'_> {
         let procedure = match &clauses.by {
             Some(method) => {
                 let said = "a comparison has one procedure only";
-                self.report(Diagnostic::error(Code::E0603, method.span, said))
+                self.report(error!(E0603, method.span, "{said}"))
             }
             None => Ok(()),
         };
@@ -94,8 +92,7 @@ impl Elaborator<'_> {
             (Some(found), _) => found,
             // Only the user can say which difference in metres does not matter.
             (None, Some(dimension)) if !dimension.is_none() => {
-                let error =
-                    Diagnostic::error(Code::E0604, measured, "how much worse may a choice be?").formal();
+                let error = error!(E0604, measured, "how much worse may a choice be?").formal();
                 return self
                     .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
             }

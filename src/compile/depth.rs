@@ -2,7 +2,6 @@
 
 use super::elaborator::{Elaborator, Lowered, MOST_NODES, Reported};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 /// How deep expressions may nest once names are expanded.
@@ -20,10 +19,9 @@ impl Elaborator<'_> {
             return Err(Reported);
         }
         if self.depth >= DEEPEST {
-            let mut error = Diagnostic::error(
-                Code::E0211,
-                self.outermost,
-                format!("the expression has more than {DEEPEST} levels after names are expanded"),
+            let mut error = error!(
+                E0211,
+                self.outermost, "the expression has more than {DEEPEST} levels after names are expanded"
             );
             if let Some((_, name)) = self.expanding.first() {
                 error = error.hint(format!("`{name}` expands through {} names", self.expanding.len()));
@@ -46,9 +44,8 @@ impl Elaborator<'_> {
         if self.endless() {
             return Err(Reported);
         }
-        let error = Diagnostic::error(Code::E0211, span, "the expression is too large after names are expanded")
-            .hint("a quantifier over formulas is expanded for every agent; quantify over states instead: `F<=1 s (forall a in crowd: …)`");
-        self.report(error)
+        self.report(error!(E0211, span, "the expression is too large after names are expanded";
+            hint: "a quantifier over formulas is expanded for every agent; quantify over states instead: `F<=1 s (forall a in crowd: …)`"))
     }
 
     /// Whether an expression was already reported as too deep or too large.
@@ -66,6 +63,6 @@ impl Elaborator<'_> {
         }
         let first = self.expanding.first().map_or("", |(_, name)| name.as_str());
         let text = format!("`{first}` expands through more than {DEEPEST} names");
-        self.report(Diagnostic::error(Code::E0211, span, text))
+        self.report(error!(E0211, span, "{text}"))
     }
 }

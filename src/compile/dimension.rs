@@ -3,7 +3,6 @@
 use crate::base::decimal::Decimal;
 pub use crate::base::dimension::{Dimension, describe};
 use crate::syntax::ast::UnitExpr;
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The number of a text that is one number with a unit.
@@ -61,17 +60,13 @@ pub fn resolve(expression: &UnitExpr) -> Result<Unit, Diagnostic> {
     let mut out = Unit { dimension: Dimension::NONE, exact: Some(Decimal::ONE), size: 1.0 };
     for factor in &expression.factors {
         let Some(unit) = unit(&factor.name.name) else {
-            let mut error = Diagnostic::error(
-                Code::E0113,
-                factor.name.span,
-                format!("unknown unit `{}`", factor.name.name),
-            );
+            let mut error = error!(E0113, factor.name.span, "unknown unit `{}`", factor.name.name);
             if let Some(near) = super::nearest::nearest(&factor.name.name, UNITS.iter().copied()) {
                 error = error.hint(format!("did you mean `{near}`?"));
             }
             return Err(error);
         };
-        let too_large = || Diagnostic::error(Code::E0302, expression.span, "this unit is out of range");
+        let too_large = || error!(E0302, expression.span, "this unit is out of range");
         let power = factor.power;
         out.dimension =
             unit.dimension.power(power).and_then(|d| out.dimension.times(d)).ok_or_else(too_large)?;

@@ -6,7 +6,6 @@
 use super::elaborator::{Elaborator, Locals};
 use super::symbols::{Meaning, ScopeId};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, ScenarioFile, UnaryOp};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 impl<'a> Elaborator<'a> {
@@ -61,7 +60,7 @@ impl<'a> Elaborator<'a> {
         let is_beyond = low <= high && (default < low || default > high);
         is_beyond.then(|| {
             let text = format!("the default of `{}` is outside its range", name.name);
-            Diagnostic::error(Code::E0405, value.span, text)
+            error!(E0405, value.span, "{text}")
         })
     }
 

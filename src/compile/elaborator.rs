@@ -353,8 +353,7 @@ impl<'a> Elaborator<'a> {
 
     /// Expected one thing, found another.
     pub(super) fn mismatch<T>(&mut self, span: Span, expected: &str, found: &Typed) -> Lowered<T> {
-        let error =
-            Diagnostic::error(Code::E0305, span, format!("expected {expected}, found {}", found.noun()));
+        let error = error!(E0305, span, "expected {expected}, found {}", found.noun());
         self.report(error)
     }
 
@@ -370,11 +369,7 @@ impl<'a> Elaborator<'a> {
     }
 
     pub(super) fn other_dimension(&self, span: Span, expected: Dimension, found: Dimension) -> Diagnostic {
-        let mut error = Diagnostic::error(
-            Code::E0303,
-            span,
-            format!("expected {}, found {}", describe(expected), describe(found)),
-        );
+        let mut error = error!(E0303, span, "expected {}, found {}", describe(expected), describe(found));
         let text = self.text(span);
         if found.is_none() && !expected.is_none() {
             // A unit belongs to a number or a point.
@@ -417,8 +412,7 @@ impl<'a> Elaborator<'a> {
             return self.wrong_dimension(expr.span, dimension, number.dimension);
         }
         if !number.value.is_finite() {
-            let error = Diagnostic::error(Code::E0405, expr.span, "the value is not a finite number");
-            return self.report(error);
+            return self.report(error!(E0405, expr.span, "the value is not a finite number"));
         }
         Ok(number)
     }
@@ -434,7 +428,7 @@ impl<'a> Elaborator<'a> {
                     _ => "changes during a trial",
                 };
                 let said = "the value must be known before a trial starts";
-                let error = Diagnostic::error(Code::E0304, expr.span, said);
+                let error = error!(E0304, expr.span, "{said}");
                 self.report(error.label(format!("{} that {when}", found.noun())))
             }
             found => self.mismatch(expr.span, "a number", &found),

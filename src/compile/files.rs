@@ -4,7 +4,6 @@ use super::sighting::{Grouping, Seen};
 use super::wishes::{beside, destinations};
 use crate::data::tracks::Velocity;
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Text, Value};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -66,8 +65,8 @@ fn asks_for_destinations(file: &ScenarioFile, tracks: &str) -> bool {
 
 /// A file that could not be opened.
 pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
-    Diagnostic::error(Code::E0701, span, reason.to_owned())
-        .hint("files are searched beside the scenario, then in each `--data DIR`")
+    error!(E0701, span, "{}", reason.to_owned();
+        hint: "files are searched beside the scenario, then in each `--data DIR`")
 }
 
 /// The contents of the files that were asked for, or why there are none.

@@ -2,7 +2,6 @@
 
 use crate::data::geometry::{PropertyValue, indoor::may_be_door};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::cmp::Ordering;
@@ -167,10 +166,6 @@ fn levels(value: PropertyValue) -> Vec<PropertyValue> {
 }
 
 fn wrong(expr: &Expr) -> Diagnostic {
-    Diagnostic::error(
-        Code::E0305,
-        expr.span,
-        "a filter can compare properties of features only with texts, numbers and truth values",
-    )
-    .hint("write for example `where source == \"map.png\" & height > 1`")
+    error!(E0305, expr.span, "a filter can compare properties of features only with texts, numbers and truth values";
+        hint: "write for example `where source == \"map.png\" & height > 1`")
 }

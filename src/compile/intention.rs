@@ -12,7 +12,6 @@ use super::wishes::{Goals, Intended, RECORDED, destinations, is_recorded, weight
 use crate::model::{Body, Goal, Law, Leg, Parameter, Route, Start};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Field, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 /// How strongly the heading tells the destination, unless stated.
 const KAPPA: f64 = 5.0;
@@ -26,7 +25,7 @@ impl Elaborator<'_> {
         for (k, field) in fields.iter().enumerate() {
             let name = field.name.name.as_str();
             if let Some(first) = fields[..k].iter().find(|before| before.name.name == name) {
-                let error = Diagnostic::error(Code::E0202, field.name.span, format!("`{name}` is set twice"));
+                let error = error!(E0202, field.name.span, "`{name}` is set twice");
                 return self.report(error.related(first.name.span, "first set here"));
             }
             match name {
@@ -36,12 +35,10 @@ impl Elaborator<'_> {
             }
         }
         if let (Some(_), Some(goals)) = (&all.turn, &all.goals) {
-            let error = Diagnostic::error(
-                Code::E0405,
-                goals.span,
-                "a destination and a law of `heading` exclude each other",
+            return self.report(
+                error!(E0405, goals.span, "a destination and a law of `heading` exclude each other";
+                hint: "remove one of them: who goes to a destination heads for it"),
             );
-            return self.report(error.hint("remove one of them: who goes to a destination heads for it"));
         }
         Ok(all)
     }
@@ -65,7 +62,7 @@ impl Elaborator<'_> {
             None => {
                 let said =
                     "`heading` must be `recorded`, or `recorded` plus an angle or a distribution of angles";
-                self.report(Diagnostic::error(Code::E0305, value_span(value), said).hint(hint))
+                self.report(error!(E0305, value_span(value), "{said}"; hint: "{hint}"))
             }
         }
     }
@@ -80,11 +77,7 @@ impl Elaborator<'_> {
             [tracks] => (tracks, None),
             [tracks, kappa] => (tracks, Some(kappa)),
             _ => {
-                return self.report(Diagnostic::error(
-                    Code::E0204,
-                    function.span,
-                    format!("`destinations` needs {usage}"),
-                ));
+                return self.report(error!(E0204, function.span, "`destinations` needs {usage}"));
             }
         };
         let index = match &tracks.kind {
@@ -96,8 +89,7 @@ impl Elaborator<'_> {
                 }
             },
             _ => {
-                let error = Diagnostic::error(Code::E0206, tracks.span, "expected the name of tracks");
-                return self.report(error);
+                return self.report(error!(E0206, tracks.span, "expected the name of tracks"));
             }
         };
         let kappa = match kappa {
@@ -106,19 +98,17 @@ impl Elaborator<'_> {
                 let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
                 if !(0.0..=MOST_KAPPA).contains(&number.value) {
                     let said = format!("`kappa` must be from 0 to {MOST_KAPPA} (got {})", number.value);
-                    return self.report(Diagnostic::error(Code::E0405, expr.span, said));
+                    return self.report(error!(E0405, expr.span, "{said}"));
                 }
                 number.value
             }
         };
         match self.destinations.get(index) {
             Some(Ok(places)) if !places.is_empty() => Ok(Goals { places: places.clone(), kappa, span }),
-            Some(Ok(_)) => {
-                let error = Diagnostic::error(Code::E0702, span, "the file has no destinations");
-                self.report(error.hint("write x and y of one destination a line, in m"))
-            }
+            Some(Ok(_)) => self.report(error!(E0702, span, "the file has no destinations";
+                    hint: "write x and y of one destination a line, in m")),
             Some(Err(reason)) => {
-                let error = Diagnostic::error(Code::E0701, span, reason.clone());
+                let error = error!(E0701, span, "{}", reason.clone());
                 self.report(
                     error.hint("put a file `destinations.txt` with x and y a line beside the recording"),
                 )
@@ -148,8 +138,8 @@ impl Elaborator<'_> {
         if let Some(goals) = &intended.goals {
             let Some(weights) = weights(&goals.places, seen.position, seen.driving, goals.kappa) else {
                 let said = format!("all destinations of person {} have weight 0", seen.id);
-                let error = Diagnostic::error(Code::E0405, goals.span, said);
-                return self.report(error.hint("this person is at all of them: add others to the file"));
+                return self.report(error!(E0405, goals.span, "{said}";
+                    hint: "this person is at all of them: add others to the file"));
             };
             let legs = goals.places.iter().map(|place| Leg::To(Goal::Point(*place))).collect();
             *route = Route::OneOf { legs, weights };
@@ -169,7 +159,7 @@ impl Elaborator<'_> {
             let said =
                 "`speed` must be `recorded`, or `recorded` times a number or a distribution of numbers";
             let hint = "write for example `speed = recorded * normal(1, 0.15) in 0 m/s .. 3 m/s`";
-            return self.report(Diagnostic::error(Code::E0305, value_span(value), said).hint(hint));
+            return self.report(error!(E0305, value_span(value), "{said}"; hint: "{hint}"));
         }
         let mut locals = Locals::default();
         locals.bind(RECORDED, Typed::Number(Number::rounded(speed, Dimension::SPEED)));

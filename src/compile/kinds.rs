@@ -9,7 +9,6 @@ use crate::model::stepper::{stature, stepped_default};
 use crate::model::{self, Body, GaitRule, Law, Parameter, Planner, SearchRule, Stepper};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -101,23 +100,20 @@ impl Elaborator<'_> {
             if matches!(meaning, Meaning::Doubtful) {
                 return Err(Reported);
             }
-            let error = Diagnostic::error(
-                Code::E0206,
+            return self.report(error!(
+                E0206,
                 name.span,
-                format!("expected a kind, but `{}` is {}", name.name, meaning.noun()),
-            );
-            return self.report(error);
+                "expected a kind, but `{}` is {}",
+                name.name,
+                meaning.noun()
+            ));
         };
         if self.expanding.iter().any(|(_, n)| *n == name.name) {
             if self.circles.contains(&name.name) {
                 return Err(Reported);
             }
             self.circles.extend(self.expanding.iter().map(|(_, n)| n.clone()));
-            return self.report(Diagnostic::error(
-                Code::E0205,
-                name.span,
-                format!("the kind `{}` depends on itself", name.name),
-            ));
+            return self.report(error!(E0205, name.span, "the kind `{}` depends on itself", name.name));
         }
         if let Some(known) = self.kinds.get(&name.name) {
             return known.clone();
@@ -182,12 +178,8 @@ impl Elaborator<'_> {
         for field in fields {
             let first = *set.entry(&field.name.name).or_insert(field);
             if !std::ptr::eq(first, field) {
-                let error = Diagnostic::error(
-                    Code::E0202,
-                    field.name.span,
-                    format!("`{}` is set twice", field.name.name),
-                )
-                .related(first.name.span, "first set here");
+                let error = error!(E0202, field.name.span, "`{}` is set twice", field.name.name)
+                    .related(first.name.span, "first set here");
                 self.note(error);
                 continue;
             }
@@ -238,7 +230,7 @@ impl Elaborator<'_> {
         }
         match parameter.refuses(&law) {
             None => Ok(law),
-            Some(reason) => self.report(Diagnostic::error(Code::E0405, value_span(value), reason)),
+            Some(reason) => self.report(error!(E0405, value_span(value), "{reason}")),
         }
     }
 
@@ -268,7 +260,7 @@ impl Elaborator<'_> {
             } else {
                 "set the values, or start from a preset: `kind adult: sfm preset smc1 { … }`"
             };
-            return self.report(Diagnostic::error(Code::E0209, name.span, title).hint(hint));
+            return self.report(error!(E0209, name.span, "{title}"; hint: "{hint}"));
         }
         let mut body = Body::new(kind.base, |parameter| {
             // A parameter that the kind does not have: 0 where it may be.
@@ -310,9 +302,8 @@ impl Elaborator<'_> {
         let known = name.and_then(|name| WAYS.iter().position(|way| *way == name));
         if known.is_none() {
             let said = "`wayfinding` must be `shortest` or `straight`";
-            let error = Diagnostic::error(Code::E0305, value_span(value), said)
-                .hint("write `wayfinding = straight` for agents that go straight for their goals whatever is in the way");
-            return self.report(error);
+            return self.report(error!(E0305, value_span(value), "{said}";
+                hint: "write `wayfinding = straight` for agents that go straight for their goals whatever is in the way"));
         }
         Ok(known == Some(1))
     }

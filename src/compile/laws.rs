@@ -99,12 +99,8 @@ impl Elaborator<'_> {
                         );
                         return self.report(error);
                     }
-                    let error =
-                        Diagnostic::error(Code::E0404, law.span, "only a distribution can be truncated")
-                            .hint(format!(
-                                "write for example `normal(mean, sd) in lo .. hi`; the distributions are {}",
-                                DISTRIBUTIONS.join(", ")
-                            ));
+                    let error = error!(E0404, law.span, "only a distribution can be truncated";
+                            hint: "write for example `normal(mean, sd) in lo .. hi`; the distributions are {}", DISTRIBUTIONS.join(", "));
                     return self.report(error);
                 };
                 let family = self.family(&drawn, law.span, dimension, locals)?;
@@ -113,8 +109,7 @@ impl Elaborator<'_> {
                 self.validated(family, (low, high), dimension, value_span(value))
             }
             other => {
-                let error =
-                    Diagnostic::error(Code::E0305, value_span(other), "expected a number or a distribution");
+                let error = error!(E0305, value_span(other), "expected a number or a distribution");
                 self.report(error)
             }
         }
@@ -182,7 +177,7 @@ impl Elaborator<'_> {
         match law.validate() {
             Ok(()) => Ok(law),
             Err(reason) => {
-                let error = Diagnostic::error(Code::E0404, span, reason);
+                let error = error!(E0404, span, "{reason}");
                 self.report(if dimension.is_none() {
                     error
                 } else {
@@ -208,18 +203,12 @@ impl Elaborator<'_> {
         let (family, by) = (family?, by?);
         self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), Dimension::NONE, span)?;
         if !(by.value > 0.0 && by.value.is_finite()) {
-            let error =
-                Diagnostic::error(Code::E0404, factor.span, "the factor of a distribution must be positive");
+            let error = error!(E0404, factor.span, "the factor of a distribution must be positive");
             return self.report(error);
         }
         let Some(mut scaled) = family.scaled(by.value) else {
-            let error = Diagnostic::error(
-                Code::E0404,
-                span,
-                format!("this `{}` cannot be multiplied", drawn.name),
-            )
-            .hint("a multiple of `beta` would leave (0, 1), and a multiple of a count can have at most 4096 values");
-            return self.report(error);
+            return self.report(error!(E0404, span, "this `{}` cannot be multiplied", drawn.name;
+                hint: "a multiple of `beta` would leave (0, 1), and a multiple of a count can have at most 4096 values"));
         };
         // Three times 0.1 s is 0.3 s, which a product of doubles misses.
         let exact = self.exactly(drawn, &scaled, locals);
@@ -305,16 +294,13 @@ impl Elaborator<'_> {
                 "choice" => "the values to choose from".to_owned(),
                 _ => format!("the mean and the standard deviation: `{name}(mean, sd)`"),
             };
-            return self.report(Diagnostic::error(Code::E0204, span, format!("`{name}` needs {usage}")));
+            return self.report(error!(E0204, span, "`{name}` needs {usage}"));
         }
         if matches!(name, "uniform_int" | "poisson" | "bernoulli") && !dimension.is_none() {
-            let error = Diagnostic::error(
-                Code::E0404,
-                span,
-                format!("`{name}` draws numbers without a unit, but {dimension} is needed"),
-            )
-            .hint(format!("multiply it by a unit: `{} * 1 {dimension}`", self.text(span)));
-            return self.report(error);
+            return self.report(
+                error!(E0404, span, "`{name}` draws numbers without a unit, but {dimension} is needed";
+                hint: "multiply it by a unit: `{} * 1 {dimension}`", self.text(span)),
+            );
         }
         let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
         let numbers: Vec<f64> =
@@ -326,11 +312,8 @@ impl Elaborator<'_> {
             "uniform" => Family::Uniform { low: first, high: second },
             "uniform_int" => {
                 if first.fract() != 0.0 || second.fract() != 0.0 {
-                    return self.report(Diagnostic::error(
-                        Code::E0404,
-                        span,
-                        "the ends of `uniform_int` must be whole numbers",
-                    ));
+                    return self
+                        .report(error!(E0404, span, "the ends of `uniform_int` must be whole numbers"));
                 }
                 Family::UniformInt { low: first as i64, high: second as i64 }
             }

@@ -15,8 +15,6 @@ use crate::model::{
     Arithmetic, Bool, Comparison, Domain, Field, Fold, Function, Num, Place, Separation, Set, Who,
 };
 use crate::syntax::ast::BinaryOp;
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 
@@ -91,14 +89,12 @@ impl Elaborator<'_> {
             Some((first, place)) if first != dimension && !margins.mixed => {
                 margins.mixed = true;
                 let name = |d: Dimension| super::dimension::describe(d);
-                let error = Diagnostic::error(
-                    Code::E0611,
+                let error = error!(
+                    E0611,
                     span,
-                    format!(
-                        "all margins of a robustness need the same unit (found {} and {})",
-                        name(dimension),
-                        name(first)
-                    ),
+                    "all margins of a robustness need the same unit (found {} and {})",
+                    name(dimension),
+                    name(first)
                 )
                 .related(place, "first margin")
                 .hint("divide both sides by a reference value: `speed(user) / 1 m/s < 1.3`");
@@ -127,12 +123,10 @@ impl Elaborator<'_> {
                     "`{}` has no margin, because `==` and `!=` are only true or false",
                     self.text(place)
                 );
-                let error = Diagnostic::error(Code::E0610, place, title);
-                return self.report(error.hint(instead));
+                return self.report(error!(E0610, place, "{title}"; hint: "{instead}"));
             }
-            let error = Diagnostic::error(Code::E0610, span, "no condition in this formula has a margin")
-                .hint("comparisons with `<`, `<=`, `>`, `>=`, contacts and regions have a margin");
-            return self.report(error);
+            return self.report(error!(E0610, span, "no condition in this formula has a margin";
+                hint: "comparisons with `<`, `<=`, `>`, `>=`, contacts and regions have a margin"));
         };
         let node = Rewriting {
             elaborator: self,
@@ -149,7 +143,7 @@ impl Elaborator<'_> {
         };
         match made {
             Some(Invalid::NoMargin | Invalid::MovingNumber) => {
-                let error = Diagnostic::error(Code::E0610, span, "a condition in this formula has no margin")
+                let error = error!(E0610, span, "a condition in this formula has no margin")
                     .label("this compares an aggregate of several states")
                     .hint(
                         "compare in each state, or compare the smallest or largest value: `min<=5 s (x) > c`",

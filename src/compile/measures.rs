@@ -256,7 +256,7 @@ impl Elaborator<'_> {
         };
         match &measure.range {
             Some((low, _)) if !matches!(measure.kind, ast::MeasureKind::Expectation) => {
-                let error = Diagnostic::error(Code::E0605, low.span, "only an expectation has a range");
+                let error = error!(E0605, low.span, "only an expectation has a range");
                 (self.report(error), sketch)
             }
             _ => (observed, sketch),
@@ -273,11 +273,8 @@ impl Elaborator<'_> {
             None if metric.is_err() && self.is_refused_as_a_whole(&measure.body) => Err(Reported),
             None => {
                 let unit = dimension.filter(|d| !d.is_none()).map_or_else(String::new, |d| format!(" {d}"));
-                let error =
-                    Diagnostic::error(Code::E0605, measure.span, "an expectation needs the range of its metric")
-                        .hint(format!(
-                            "write the range of its values: `E(…) in 0{unit} .. 10{unit}`; values outside are clipped and counted"
-                        ));
+                let error = error!(E0605, measure.span, "an expectation needs the range of its metric";
+                        hint: "write the range of its values: `E(…) in 0{unit} .. 10{unit}`; values outside are clipped and counted");
                 self.report(error)
             }
         };
@@ -325,7 +322,7 @@ impl Elaborator<'_> {
         let expected = Sketch { dimension: Some(least.dimension), ..sketch };
         let most = self.number_in(high, expected, locals)?;
         if least.value >= most.value {
-            return self.report(Diagnostic::error(Code::E0605, low.span.to(high.span), "the range is empty"));
+            return self.report(error!(E0605, low.span.to(high.span), "the range is empty"));
         }
         Ok((least.value, most.value))
     }
@@ -347,9 +344,8 @@ impl Elaborator<'_> {
         {
             // `Q(time_until(safe), 0.95)`
             let (metric, number) = (self.text(level.span), self.text(measure.body.span));
-            let error =
-                Diagnostic::error(Code::E0601, level.span, "the first argument of a quantile is its level")
-                    .hint(format!("write `Q({number}, {metric})`"));
+            let error = error!(E0601, level.span, "the first argument of a quantile is its level";
+                    hint: "write `Q({number}, {metric})`");
             return (self.report(error), Sketch::of(What::Quantile, None));
         }
         let number = self.number_of(level, Dimension::NONE, &Locals::of(scope)).and_then(|number| {
@@ -357,7 +353,7 @@ impl Elaborator<'_> {
                 return Ok(number.value);
             }
             let said = "the level of a quantile must be between 0 and 1";
-            self.report(Diagnostic::error(Code::E0601, level.span, said))
+            self.report(error!(E0601, level.span, "{said}"))
         });
         let metric = self.metric_root(&measure.body, scope);
         let dimension = self.dimension_of(&metric, &measure.body, scope);
@@ -423,12 +419,12 @@ impl Elaborator<'_> {
                 } else {
                     "use a longer step, shorter windows, or fewer nested windows"
                 };
-                self.report(Diagnostic::error(Code::E0509, span, reason.to_string()).hint(hint))
+                self.report(error!(E0509, span, "{}", reason.to_string(); hint: "{hint}"))
             }
             // The horizon is unknown.
             Some(Invalid::BeyondHorizon { .. }) if self.told < Told::Whole => Ok(()),
             Some(reason @ Invalid::BeyondHorizon { .. }) => {
-                self.report(Diagnostic::error(Code::E0502, span, reason.to_string()))
+                self.report(error!(E0502, span, "{}", reason.to_string()))
             }
             Some(reason) => {
                 let code = if clock.is_jumps() { Code::E0508 } else { Code::E0504 };
@@ -441,17 +437,13 @@ impl Elaborator<'_> {
     fn within_horizon(&mut self, part: Part, span: Span) -> Lowered<bool> {
         let reach = match reach(&self.tree, part, self.horizon, self.clock) {
             Ok(reach) => reach,
-            Err(reason) => return self.report(Diagnostic::error(Code::E0504, span, reason.to_string())),
+            Err(reason) => return self.report(error!(E0504, span, "{}", reason.to_string())),
         };
         if reach.ticks <= self.horizon.0 || self.told < Told::Whole {
             return Ok(reach.unbounded);
         }
         let (needed, horizon) = (self.duration(reach.ticks), self.duration(self.horizon.0));
-        let mut error = Diagnostic::error(
-            Code::E0502,
-            span,
-            format!("the formula needs {needed}, but the horizon is {horizon}"),
-        );
+        let mut error = error!(E0502, span, "the formula needs {needed}, but the horizon is {horizon}");
         // One that begins beyond has no bounded one inside to blame.
         let begins = match part {
             Part::Node(node) => match &self.tree.nodes[node.0 as usize] {

@@ -11,7 +11,6 @@ use crate::stats::procedures::{EPROCESS, MEAN_FIXED, MEAN_WITHIN, PROBABILITY_WI
 use crate::stats::spec::{Kind, Make, Serves};
 use crate::stats::{Chosen, Spec, splitting};
 use crate::syntax::ast::{Clauses, Expr, Method};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -59,13 +58,8 @@ impl Elaborator<'_> {
     pub(super) fn confidence(&mut self, expr: &Expr, locals: &Locals) -> Lowered<f64> {
         let number = self.number_of(expr, Dimension::NONE, locals)?;
         if number.value <= 0.5 || number.value >= 1.0 {
-            let error = Diagnostic::error(
-                Code::E0604,
-                expr.span,
-                format!("the confidence must be above 50 % and below 100 % (got {})", number.value),
-            )
-            .hint("write `confidence 95 %` or `confidence 0.95`");
-            return self.report(error);
+            return self.report(error!(E0604, expr.span, "the confidence must be above 50 % and below 100 % (got {})", number.value;
+                hint: "write `confidence 95 %` or `confidence 0.95`"));
         }
         // 1 - 0.95 is not 0.05 in doubles; the decimal is.
         let exact = number.exact.and_then(|c| crate::base::decimal::Decimal::ONE.sub(c));
@@ -81,7 +75,7 @@ impl Elaborator<'_> {
         let Some(expr) = &clauses.within else { return Ok(None) };
         let number = self.number_in(expr, sketch, locals)?;
         if number.value <= 0.0 {
-            return self.report(Diagnostic::error(Code::E0604, expr.span, "`within` must be positive"));
+            return self.report(error!(E0604, expr.span, "`within` must be positive"));
         }
         Ok(Some(number.value))
     }
@@ -100,11 +94,7 @@ impl Elaborator<'_> {
         for argument in &method.arguments {
             let _ = self.number(&argument.value, locals);
         }
-        let error = Diagnostic::error(
-            Code::E0603,
-            method.name.span,
-            format!("the procedure `{name}` is not available for this query"),
-        );
+        let error = error!(E0603, method.name.span, "the procedure `{name}` is not available for this query");
         let known: Vec<&str> = Spec::names(serves).collect();
         let hint = nearest(name, known.iter().copied()).map_or_else(
             || format!("the procedures are {}", known.join(", ")),
@@ -116,7 +106,7 @@ impl Elaborator<'_> {
     /// That a check states no width.
     pub(super) fn no_width(&mut self, clauses: &Clauses, what: What) -> Lowered<()> {
         let Some(within) = &clauses.within else { return Ok(()) };
-        let error = Diagnostic::error(Code::E0607, within.span, "a check has no `within`");
+        let error = error!(E0607, within.span, "a check has no `within`");
         self.report(if what == What::Expectation {
             error.hint("remove `within`: the check stops as soon as the interval of the mean is on one side of the threshold")
         } else {
@@ -163,14 +153,9 @@ impl Elaborator<'_> {
             What::Quantile => Serves::Quantile,
         };
         let misplaced = match &clauses.within {
-            Some(expr) if serves == Serves::Quantile => {
-                let error = Diagnostic::error(
-                    Code::E0607,
-                    expr.span,
-                    "a quantile has a number of trials, not a width",
-                );
-                self.report(error.hint("write `by fixed(trials = 2000)`; the values determine the width"))
-            }
+            Some(expr) if serves == Serves::Quantile => self
+                .report(error!(E0607, expr.span, "a quantile has a number of trials, not a width";
+                    hint: "write `by fixed(trials = 2000)`; the values determine the width")),
             _ => Ok(()),
         };
         let estimator = match &clauses.by {
@@ -223,7 +208,7 @@ impl Elaborator<'_> {
             ),
             _ => return Ok(()),
         };
-        self.report(Diagnostic::error(Code::E0607, within.span, said).hint(hint))
+        self.report(error!(E0607, within.span, "{said}"; hint: "{hint}"))
     }
 
     /// That all paths of splitting fit into memory.
@@ -236,7 +221,7 @@ impl Elaborator<'_> {
         let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
         let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
         let said = format!("{paths} paths need {taken:.1} GB of memory; the limit is {limit:.1} GB");
-        let error = Diagnostic::error(Code::E0923, method.span, said);
+        let error = error!(E0923, method.span, "{said}");
         let given = method.arguments.iter().find(|argument| argument.name.name == "replicas");
         let error = given.map(|one| one.value.span).into_iter().fold(error, Diagnostic::hanging_on);
         let fewer = MOST_PATHS / rule.runs;

@@ -6,8 +6,6 @@ use super::study::Part;
 use super::wording::Frame;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId};
 use crate::model::{AgentId, Bool, Num, Who};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
@@ -79,13 +77,8 @@ impl Elaborator<'_> {
         }
         if self.atoms.len() - self.atoms_before >= MOST_ATOMS {
             if !self.failed() {
-                let error = Diagnostic::error(
-                    Code::E0211,
-                    span,
-                    format!("the formula expands into more than {MOST_ATOMS} conditions"),
-                )
-                .hint("a quantifier over formulas is expanded for every agent; quantify over states instead: `F<=1 s (forall a in crowd: …)`");
-                self.note(error);
+                self.note(error!(E0211, span, "the formula expands into more than {MOST_ATOMS} conditions";
+                    hint: "a quantifier over formulas is expanded for every agent; quantify over states instead: `F<=1 s (forall a in crowd: …)`"));
             }
             self.overflown = true;
             return self.node(Node::Constant(false));

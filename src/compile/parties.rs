@@ -13,8 +13,6 @@ use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
 use crate::syntax::ast::{Field, GroupDecl, Recorded, Value};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use std::sync::Arc;
 
 /// Friction where two particles overlap, kg/(m s), unless the group sets its own: two couples that pass
@@ -60,14 +58,13 @@ impl<'a> Elaborator<'a> {
             (Some(count), None) => self.count(count),
             (Some(count), Some(_)) => {
                 let said = "the recording determines the number of members";
-                let error = Diagnostic::error(Code::E0402, count.span, said);
-                self.report(error.hint("remove the number in brackets"))
+                self.report(error!(E0402, count.span, "{said}"; hint: "remove the number in brackets"))
             }
             (None, Some(_)) => Ok(0),
             (None, None) => {
                 let said = format!("the number of members of `{}` is missing", decl.name.name);
-                let error = Diagnostic::error(Code::E0402, decl.name.span, said);
-                self.report(error.hint(format!("write `group {}[2]: …`", decl.name.name)))
+                self.report(error!(E0402, decl.name.span, "{said}";
+                    hint: "write `group {}[2]: …`", decl.name.name))
             }
         };
         let with = self.with(&decl.name, &decl.with);
@@ -81,7 +78,7 @@ impl<'a> Elaborator<'a> {
             return;
         }
         if let (Some(span), 0) = (decl.particle, count) {
-            self.note(Diagnostic::error(Code::E0402, span, "a particle needs at least one person"));
+            self.note(error!(E0402, span, "a particle needs at least one person"));
             self.define_empty(&decl.name, false, with);
             return;
         }
@@ -136,14 +133,13 @@ impl<'a> Elaborator<'a> {
         let body = kind.and_then(|kind| {
             let meaning = kind.base.meaning();
             if let (Some(at), true) = (decl.particle, kind.base != model::Kind::Sfm) {
-                let error =
-                    Diagnostic::error(Code::E0406, at, format!("{meaning} cannot move `as particle`"));
+                let error = error!(E0406, at, "{meaning} cannot move `as particle`");
                 return self.report(error.hint("remove `as particle` to simulate the members"));
             }
             if kind.base == model::Kind::Stepped {
                 let said = format!("{meaning} cannot be a group: no force acts on them");
-                let error = Diagnostic::error(Code::E0406, decl.kind.span, said);
-                return self.report(error.hint(format!("write `agents {}[…]`", decl.name.name)));
+                return self.report(error!(E0406, decl.kind.span, "{said}";
+                    hint: "write `agents {}[…]`", decl.name.name));
             }
             self.body(&kind, &decl.kind)
         });
@@ -166,12 +162,12 @@ impl<'a> Elaborator<'a> {
         let Some(field) = rest.iter().find(|field| field.name.name == name) else { return Ok(unset) };
         let Value::Plain(expr) = &field.value else {
             let place = value_span(&field.value);
-            return self.report(Diagnostic::error(Code::E0305, place, "expected a number"));
+            return self.report(error!(E0305, place, "expected a number"));
         };
         let number = self.number_of(expr, dimension, &Locals::default())?;
         if number.value < 0.0 {
             let said = format!("`{name}` cannot be negative");
-            return self.report(Diagnostic::error(Code::E0405, expr.span, said));
+            return self.report(error!(E0405, expr.span, "{said}"));
         }
         Ok(number.value)
     }

@@ -14,7 +14,6 @@ use crate::base::random::name_hash;
 use crate::model::{Agent, AgentId, Body, Group, Law, Parameter, Route, Source, Start};
 use crate::syntax::ast::{AgentsDecl, Expr, Field, Ident};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -86,8 +85,8 @@ impl<'a> Elaborator<'a> {
         match people.entities(path, size) {
             Some(first) => Ok(first),
             None => self.report(
-                Diagnostic::error(Code::E0913, span, "too many agents: the 16 million stable ids are used up")
-                    .hint("every agent that may arrive by a source needs an id: reduce the arrivals, or shorten the horizon"),
+                error!(E0913, span, "too many agents: the 16 million stable ids are used up";
+                    hint: "every agent that may arrive by a source needs an id: reduce the arrivals, or shorten the horizon"),
             ),
         }
     }
@@ -96,26 +95,17 @@ impl<'a> Elaborator<'a> {
     pub(super) fn agents(&mut self, decl: &'a AgentsDecl, people: &mut People) {
         let kind = self.kind(&decl.kind);
         let count = match (&decl.count, &decl.recorded) {
-            (Some(count), None) if !decl.plural => {
-                let error = Diagnostic::error(Code::E0402, count.span, "`agent` declares only one agent")
-                    .hint(format!("write `agents {}[…]: …` for several agents", decl.name.name));
-                self.report(error)
-            }
+            (Some(count), None) if !decl.plural => self
+                .report(error!(E0402, count.span, "`agent` declares only one agent";
+                    hint: "write `agents {}[…]: …` for several agents", decl.name.name)),
             (Some(count), None) => self.count(count),
             (Some(count), Some(_)) => {
                 let said = "the recording determines the number of agents";
-                let error = Diagnostic::error(Code::E0402, count.span, said);
-                self.report(error.hint("remove the number in brackets"))
+                self.report(error!(E0402, count.span, "{said}"; hint: "remove the number in brackets"))
             }
-            (None, None) if decl.plural => {
-                let error = Diagnostic::error(
-                    Code::E0402,
-                    decl.name.span,
-                    format!("the number of `{}` is missing", decl.name.name),
-                )
-                .hint(format!("write `agents {}[12]: …`", decl.name.name));
-                self.report(error)
-            }
+            (None, None) if decl.plural => self
+                .report(error!(E0402, decl.name.span, "the number of `{}` is missing", decl.name.name;
+                    hint: "write `agents {}[12]: …`", decl.name.name)),
             _ => Ok(1),
         };
         let with = self.with(&decl.name, &decl.with);
@@ -226,28 +216,22 @@ impl<'a> Elaborator<'a> {
         match number.as_whole() {
             Some(n) if n < 0 => {
                 let said = format!("the number of agents cannot be negative (got {n})");
-                self.report(Diagnostic::error(Code::E0402, expr.span, said))
+                self.report(error!(E0402, expr.span, "{said}"))
             }
             Some(n) if n as usize <= MOST_AGENTS => Ok(n as usize),
-            Some(n) => self.report(Diagnostic::error(
-                Code::E0402,
-                expr.span,
-                format!("the number of agents must be at most {MOST_AGENTS} (got {n})"),
+            Some(n) => self.report(error!(
+                E0402,
+                expr.span, "the number of agents must be at most {MOST_AGENTS} (got {n})"
             )),
             None if number.value > MOST_AGENTS as f64 && number.value.fract() == 0.0 => {
                 let text =
                     format!("the number of agents must be at most {MOST_AGENTS} (got {})", number.value);
-                self.report(Diagnostic::error(Code::E0402, expr.span, text))
+                self.report(error!(E0402, expr.span, "{text}"))
             }
-            None => {
-                let error = Diagnostic::error(
-                    Code::E0402,
-                    expr.span,
-                    format!("the number of agents must be whole (got {})", number.value),
-                )
-                .hint("round it: `round(…)`");
-                self.report(error)
-            }
+            None => self.report(
+                error!(E0402, expr.span, "the number of agents must be whole (got {})", number.value;
+                    hint: "round it: `round(…)`"),
+            ),
         }
     }
 

@@ -5,8 +5,6 @@ use super::elaborator::{Elaborator, Locals, Lowered};
 use crate::base::geometry::Vec2;
 use crate::model::{Barrier, Obstacle, Period, Route, Start};
 use crate::syntax::ast::{Expr, Field, Ident, Item, ScenarioFile, SceneItem};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 /// The shortest period, m: in a shorter one images of one person would be within reach of each other (cells of Voronoi
@@ -46,7 +44,7 @@ impl<'a> Elaborator<'a> {
         let (low, high) = (coordinate(self, &ends[0]), coordinate(self, &ends[1]));
         if !["x", "y"].contains(&axis.name.as_str()) {
             let text = format!("a scene is periodic along `x` or `y` (got `{}`)", axis.name);
-            return self.report(Diagnostic::error(Code::E0410, axis.span, text).hint(example));
+            return self.report(error!(E0410, axis.span, "{text}"; hint: "{example}"));
         }
         let (low, high) = (low?, high?);
         let period = Period { low, length: high - low };
@@ -59,13 +57,13 @@ impl<'a> Elaborator<'a> {
         };
         if let Some(text) = wrong {
             let range = ends[0].span.to(ends[1].span);
-            return self.report(Diagnostic::error(Code::E0410, range, text).hint(example));
+            return self.report(error!(E0410, range, "{text}"; hint: "{example}"));
         }
         let periods = &mut self.scene.periods;
         let known = if axis.name == "x" { &mut periods.x } else { &mut periods.y };
         if known.is_some() {
             let text = format!("the period along `{}` is declared twice", axis.name);
-            return self.report(Diagnostic::error(Code::E0410, span, text).hint("remove one of them"));
+            return self.report(error!(E0410, span, "{text}"; hint: "remove one of them"));
         }
         *known = Some(period);
         Ok(())
@@ -84,8 +82,8 @@ impl<'a> Elaborator<'a> {
             Some(format!("{axis} = {} lies outside of the period {low} .. {high}", metres(v)))
         };
         let text = beyond("x", periods.x, p.x).or_else(|| beyond("y", periods.y, p.y));
-        let error = Diagnostic::error(Code::E0410, span, text.unwrap_or_default());
-        self.report(error.hint("end at the ends of the period: what is there continues at the other end"))
+        self.report(error!(E0410, span, "{}", text.unwrap_or_default();
+            hint: "end at the ends of the period: what is there continues at the other end"))
     }
 
     /// Refuses barriers of imports outside of the scene.
@@ -109,7 +107,7 @@ impl<'a> Elaborator<'a> {
             return Ok(());
         }
         let text = format!("{what} are not available in a periodic scene");
-        self.report(Diagnostic::error(Code::E0410, span, text).hint(hint))
+        self.report(error!(E0410, span, "{text}"; hint: "{hint}"))
     }
 
     /// Where somebody goes: its `route`, or in a periodic scene its `direction`, which is part of its start.
@@ -131,7 +129,7 @@ impl<'a> Elaborator<'a> {
             (field("route").map(|_| "an agent has a `direction` or a `route`, not both"), "remove `route`")
         };
         if let Some(text) = wrong.filter(|_| !is_torn) {
-            return self.report(Diagnostic::error(Code::E0410, direction.name.span, text).hint(hint));
+            return self.report(error!(E0410, direction.name.span, "{text}"; hint: "{hint}"));
         }
         let start = Start { driving: Some(Vec2::new(1.0, 0.0)), turn: law?, own_speed: true, ..start? };
         Ok((start, Route::Onward))

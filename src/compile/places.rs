@@ -249,13 +249,13 @@ impl Elaborator<'_> {
         let called = barrier.phrase();
         let error = if distance <= ONE_POINT {
             let hint = self.walkable_hint(p).unwrap_or_else(|| "move the start or the barrier".into());
-            Diagnostic::error(Code::E0409, span, format!("`{name}` starts {place} {called}")).hint(hint)
+            error!(E0409, span, "`{name}` starts {place} {called}"; hint: "{hint}")
         } else if comes && distance < radius {
             let text = format!(
                 "agents of `{name}` have no room to arrive here: {called} is {distance:.3} m away, and their radius is at least {radius:.3} m"
             );
-            Diagnostic::error(Code::E0801, span, text)
-                .hint("agents of a source arrive where they touch nothing; move the place or the barrier")
+            error!(E0801, span, "{text}";
+                hint: "agents of a source arrive where they touch nothing; move the place or the barrier")
         } else if !comes && distance < LEAST_LEFT * radius {
             let text = format!(
                 "`{name}` starts {distance:.3} m from {called}, which leaves less than half of its radius ({radius:.3} m)"
@@ -263,7 +263,7 @@ impl Elaborator<'_> {
             let hint = format!(
                 "move the start at least {radius:.3} m away from the {what}, or set a smaller radius"
             );
-            Diagnostic::error(Code::E0409, span, text).hint(hint)
+            error!(E0409, span, "{text}"; hint: "{hint}")
         } else {
             return None;
         };
@@ -302,10 +302,8 @@ impl Elaborator<'_> {
                     std::f64::consts::PI * squares,
                     std::f64::consts::PI * room
                 );
-                self.note(
-                    Diagnostic::error(Code::E0801, span, text)
-                        .hint("use fewer agents, a larger distance, or smaller radii"),
-                );
+                self.note(error!(E0801, span, "{text}";
+                        hint: "use fewer agents, a larger distance, or smaller radii"));
                 return;
             }
         }
@@ -315,7 +313,7 @@ impl Elaborator<'_> {
 /// Two at one point.
 fn together(first: &Agent, second: &Agent, other: Option<Span>, span: Span) -> Diagnostic {
     let text = format!("`{}` and `{}` start at the same point", first.name, second.name);
-    let error = Diagnostic::error(Code::E0409, span, text);
+    let error = error!(E0409, span, "{text}");
     match other {
         Some(other) if other != span => error
             .related(other, "first used here")
@@ -334,7 +332,7 @@ fn without_room(agent: &Agent, shape: &Shape, barriers: &[Solid<'_>], span: Span
         "`{}` has no free place here: walls and obstacles leave no room for a radius of {radius:.3} m or more",
         agent.name
     );
-    Some(Diagnostic::error(Code::E0801, span, text).hint("use a larger shape or smaller radii"))
+    Some(error!(E0801, span, "{text}"; hint: "use a larger shape or smaller radii"))
 }
 
 /// Two bodies that are larger than the distance at which they are to be.
@@ -347,10 +345,7 @@ fn too_near(agent: &Agent, anchor: &Agent, within: f64, span: Span) -> Option<Di
         "`{}` cannot start within {within} m of `{}`: their bodies touch at {sum:.3} m or more",
         agent.name, anchor.name
     );
-    Some(
-        Diagnostic::error(Code::E0801, span, text)
-            .hint("the distance is between the centers; write a larger one"),
-    )
+    Some(error!(E0801, span, "{text}"; hint: "the distance is between the centers; write a larger one"))
 }
 
 /// The first of the people of a declaration.

@@ -13,7 +13,6 @@ use crate::model::planner::{RoadmapRule, SpeedRule};
 use crate::model::{self, Parameter};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 /// Most samples of a roadmap.
 const MOST_SAMPLES: f64 = 100_000.0;
@@ -62,7 +61,7 @@ impl Elaborator<'_> {
                     return Ok(());
                 }
                 let said = "`profile` must be `varied`, `optimal` or `uniform`";
-                self.report(Diagnostic::error(Code::E0305, value_span(value), said))
+                self.report(error!(E0305, value_span(value), "{said}"))
             }
             (_, value) => self.avoid(value, kind),
         }
@@ -80,12 +79,12 @@ impl Elaborator<'_> {
                 let force = self.kind(&Ident { name: name.clone(), span: *span })?;
                 if force.base != model::Kind::Sfm || name == model::Kind::Sfm.name() {
                     let said = format!("`{name}` is no force: write `sfm preset {FORCE}` or a kind of `sfm`");
-                    return self.report(Diagnostic::error(Code::E0305, *span, said));
+                    return self.report(error!(E0305, *span, "{said}"));
                 }
                 Parameter::ALL.map(|parameter| force.law(parameter))
             }
             other => {
-                let error = Diagnostic::error(Code::E0305, value_span(other), "expected a force");
+                let error = error!(E0305, value_span(other), "expected a force");
                 return self
                     .report(error.hint(format!("write `avoid = sfm preset {FORCE}` or a kind of `sfm`")));
             }
@@ -104,7 +103,7 @@ impl Elaborator<'_> {
         if base.name != model::Kind::Sfm.name() {
             let said = format!("expected `sfm`, found `{}`", base.name);
             let hint = format!("write `sfm preset {FORCE}`, or a kind of `sfm`");
-            found = self.report(Diagnostic::error(Code::E0305, base.span, said).hint(hint));
+            found = self.report(error!(E0305, base.span, "{said}"; hint: "{hint}"));
         }
         if presets::PRESETS.iter().all(|known| known.name != preset.name) {
             let known = presets::PRESETS.iter().map(|preset| preset.name);
@@ -116,7 +115,7 @@ impl Elaborator<'_> {
     /// `prm(…)` or `rrt(…)`, and the clearance.
     pub(super) fn roadmap(&mut self, value: &Value, locals: &Locals) -> Lowered<(RoadmapRule, f64)> {
         let Some((name, arguments)) = call(value) else {
-            let error = Diagnostic::error(Code::E0305, value_span(value), "expected `prm(…)` or `rrt(…)`");
+            let error = error!(E0305, value_span(value), "expected `prm(…)` or `rrt(…)`");
             return self
                 .report(error.hint("write for example `roadmap = prm(samples = 500, sampling = bridge)`"));
         };
@@ -136,10 +135,8 @@ impl Elaborator<'_> {
             "rrt" => {
                 let root = match arguments.iter().find(|argument| argument.name.name == "root") {
                     Some(argument) => self.goal(&argument.value, locals),
-                    None => {
-                        let error = Diagnostic::error(Code::E0209, name.span, "`rrt` has no root");
-                        self.report(error.hint("write `rrt(root = …)` with a region or a point"))
-                    }
+                    None => self.report(error!(E0209, name.span, "`rrt` has no root";
+                            hint: "write `rrt(root = …)` with a region or a point")),
                 };
                 let values = self.numbers_among(name, arguments, &RRT, &["root"], locals)?;
                 let [samples, step, bias, clearance] = values;

@@ -9,8 +9,6 @@ use super::typed::Typed;
 use crate::base::geometry::Vec2;
 use crate::model::{Position, Start, TOP_SPEED, Who};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Value};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 impl Elaborator<'_> {
     pub(super) fn start(
@@ -23,18 +21,15 @@ impl Elaborator<'_> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
             Some(field) if self.misread_placement(&field.value) => Err(Reported),
             Some(field) => self.position(name, &field.value, people),
-            None if required => {
-                let error = Diagnostic::error(Code::E0209, name.span, format!("`{}` has no `at`", name.name))
-                    .hint("write `at = ` with a point, `uniform in` a shape, or `near` another agent");
-                self.report(error)
-            }
+            None if required => self.report(error!(E0209, name.span, "`{}` has no `at`", name.name;
+                    hint: "write `at = ` with a point, `uniform in` a shape, or `near` another agent")),
             None => Err(Reported),
         };
         let velocity = match fields.iter().find(|f| f.name.name == "velocity").map(|f| &f.value) {
             Some(Value::Plain(expr)) => self.velocity_of(expr),
             Some(other) => {
                 let said = "expected a velocity such as `(1, 0) m/s`";
-                self.report(Diagnostic::error(Code::E0305, value_span(other), said))
+                self.report(error!(E0305, value_span(other), "{said}"))
             }
             None => Ok(Vec2::zeros()),
         };
@@ -46,9 +41,8 @@ impl Elaborator<'_> {
             Typed::Point(x, y) if x.dimension == Dimension::SPEED => Vec2::new(x.value, y.value),
             Typed::Point(x, _) => {
                 let found = describe(x.dimension);
-                let error =
-                    Diagnostic::error(Code::E0303, expr.span, format!("expected a velocity, found {found}"))
-                        .hint("write the unit after the parentheses: `(1, 0) m/s`");
+                let error = error!(E0303, expr.span, "expected a velocity, found {found}";
+                        hint: "write the unit after the parentheses: `(1, 0) m/s`");
                 return self.report(error);
             }
             found => return self.mismatch(expr.span, "a velocity such as `(1, 0) m/s`", &found),
@@ -58,9 +52,8 @@ impl Elaborator<'_> {
             let text = format!(
                 "the initial speed exceeds {TOP_SPEED} m/s, the limit for a person (got {speed} m/s)"
             );
-            let error = Diagnostic::error(Code::E0405, expr.span, text)
-                .hint("every trial would diverge; write a smaller velocity");
-            return self.report(error);
+            return self.report(error!(E0405, expr.span, "{text}";
+                hint: "every trial would diverge; write a smaller velocity"));
         }
         Ok(velocity)
     }
@@ -82,7 +75,7 @@ impl Elaborator<'_> {
             let said = format!("agents from source `{name}` are not present at the start");
             (said, "start near an agent, or at a place")
         };
-        self.report(Diagnostic::error(Code::E0403, agent.span, title).hint(hint))
+        self.report(error!(E0403, agent.span, "{title}"; hint: "{hint}"))
     }
 
     /// The start of who is declared by a name.
@@ -93,7 +86,7 @@ impl Elaborator<'_> {
                 let distance = match self.number_of(within, Dimension::LENGTH, &Locals::default()) {
                     Ok(distance) if distance.value <= 0.0 => {
                         let said = "the distance must be positive";
-                        self.report(Diagnostic::error(Code::E0405, within.span, said))
+                        self.report(error!(E0405, within.span, "{said}"))
                     }
                     far => far.and_then(|d| self.in_reach(within.span, Vec2::new(d.value, 0.0)).map(|_| d)),
                 };
@@ -113,11 +106,7 @@ impl Elaborator<'_> {
                 Typed::Region(id) => self.region_shape(id, expr.span).map(Position::Within),
                 found => self.mismatch(expr.span, "a point, a region or `uniform in` a shape", &found),
             },
-            other => self.report(Diagnostic::error(
-                Code::E0305,
-                value_span(other),
-                "expected a place to start from",
-            )),
+            other => self.report(error!(E0305, value_span(other), "expected a place to start from")),
         }
     }
 }

@@ -232,9 +232,8 @@ impl<'a> Compiler<'a> {
         for item in &file.items {
             if let PropertyItem::Family { confidence, .. } = item {
                 if let Some(first) = stated.replace(confidence.span) {
-                    let error =
-                        Diagnostic::error(Code::E0202, confidence.span, "a file can have only one family")
-                            .related(first, "first stated here");
+                    let error = error!(E0202, confidence.span, "a file can have only one family")
+                        .related(first, "first stated here");
                     self.sites[base].elaborator.note(error);
                 }
                 family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
@@ -448,7 +447,7 @@ impl<'a> Compiler<'a> {
             && !diagnostics.iter().any(|d| d.severity == Severity::Error)
         {
             let text = "internal error: this query was rejected without a diagnostic";
-            diagnostics.push(Diagnostic::error(Code::E0305, *query, text));
+            diagnostics.push(error!(E0305, *query, "{text}"));
         }
         // What was cut short is refused by the parser; what was left out without an error, by whoever reads this.
         let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);

@@ -16,8 +16,6 @@ use crate::model::{AgentId, Bool, Move, Num, Who};
 use crate::stats::ranking::Ranking;
 use crate::stats::spec::Make;
 use crate::syntax::ast::{self, Clauses, Expr, Ident, Ranked, Values};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 
@@ -69,7 +67,7 @@ impl<'a> Compiler<'a> {
         };
         let elaborator = &mut self.sites[site].elaborator;
         let rankable = if sketch.what == What::Quantile {
-            let error = Diagnostic::error(Code::E0607, measure.span, "`rank` accepts only `P(…)` and `E(…)`");
+            let error = error!(E0607, measure.span, "`rank` accepts only `P(…)` and `E(…)`");
             elaborator.report(error)
         } else {
             Ok(())
@@ -81,9 +79,8 @@ impl<'a> Compiler<'a> {
         if let (Ok(Make::Ranking(Ranking::Okamoto)), What::Expectation, Some(method)) =
             (procedure.as_ref().map(|chosen| chosen.spec.make), sketch.what, &clauses.by)
         {
-            let error = Diagnostic::error(Code::E0607, method.span, "`okamoto` ranks only by `P(…)`").hint(
-                "remove `by okamoto`: the default procedure also ranks by `E(…)`, and needs fewer trials",
-            );
+            let error = error!(E0607, method.span, "`okamoto` ranks only by `P(…)`";
+                hint: "remove `by okamoto`: the default procedure also ranks by `E(…)`, and needs fewer trials");
             return elaborator.report(error);
         }
         rankable?;
@@ -122,9 +119,8 @@ impl<'a> Compiler<'a> {
         let wanted = if paths || what.name == "moves" {
             Ok(())
         } else {
-            let error =
-                Diagnostic::error(Code::E0606, what.span, format!("`{}` cannot be ranked", what.name))
-                    .hint("write `rank moves of …` or `rank paths of …`");
+            let error = error!(E0606, what.span, "`{}` cannot be ranked", what.name;
+                    hint: "write `rank moves of …` or `rank paths of …`");
             elaborator.report(error)
         };
         let typed = elaborator.lower(agent, locals)?;
@@ -165,7 +161,7 @@ impl<'a> Compiler<'a> {
             let is_set = set_elsewhere(self.input.settings, name, &list[..k], clauses);
             let elaborator = &mut self.sites[site].elaborator;
             if let Some((said, place, label)) = is_set {
-                let error = Diagnostic::error(Code::E0210, name.span, said);
+                let error = error!(E0210, name.span, "{said}");
                 elaborator.note(error.related(place, label).hint("remove one of them"));
                 failed = true;
                 continue;
@@ -179,7 +175,7 @@ impl<'a> Compiler<'a> {
             let count = points.len().saturating_mul(numbers.len());
             if count > MOST_OPTIONS {
                 let said = format!("a ranking has at most {MOST_OPTIONS} options (got {count})");
-                return elaborator.report(Diagnostic::error(Code::E0606, name.span, said));
+                return elaborator.report(error!(E0606, name.span, "{said}"));
             }
             let with = |point: &BTreeMap<String, Number>, number: &Number| {
                 let mut point = point.clone();
@@ -235,7 +231,7 @@ impl<'a> Compiler<'a> {
             }
             if !differs {
                 let said = format!("the values of `{}` {IDLE}", name.name);
-                let error = Diagnostic::error(Code::E0606, name.span, said);
+                let error = error!(E0606, name.span, "{said}");
                 return self.sites[site].elaborator.report(
                     error.hint(
                         "rank a parameter on which the scenario or the measure depends for these values",
@@ -314,6 +310,6 @@ impl Elaborator<'_> {
         };
         let what = if paths { "paths" } else { "moves" };
         let said = format!("the scenario declares no {what} for `{name}`");
-        self.report(Diagnostic::error(Code::E0606, at, said).hint(hint))
+        self.report(error!(E0606, at, "{said}"; hint: "{hint}"))
     }
 }

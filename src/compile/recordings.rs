@@ -29,7 +29,7 @@ impl Elaborator<'_> {
             Some((_, Meaning::Doubtful)) => Err(Reported),
             Some((_, meaning)) => {
                 let said = format!("expected a recording, but `{}` is {}", name.name, meaning.noun());
-                self.report(Diagnostic::error(Code::E0206, name.span, said))
+                self.report(error!(E0206, name.span, "{said}"))
             }
             None => {
                 let recordings: Vec<String> = self.scopes[0]
@@ -62,8 +62,7 @@ impl Elaborator<'_> {
             let hint = near.map_or("the recording is empty".to_owned(), |t| {
                 format!("the nearest time with persons is {t} s")
             });
-            let error =
-                Diagnostic::error(Code::E0703, recorded.at.span, "no person was recorded at this time");
+            let error = error!(E0703, recorded.at.span, "no person was recorded at this time");
             return self.report(error.hint(hint));
         }
         let named = recorded.only.iter().chain(&recorded.except).zip(&ids);
@@ -81,8 +80,8 @@ impl Elaborator<'_> {
         let people: Vec<Sighting> = found.into_iter().filter(|one| is_chosen(one.id)).collect();
         if single && people.len() != 1 && !(is_live && people.is_empty()) {
             let said = format!("{} persons were recorded at this time, but one is needed", people.len());
-            let error = Diagnostic::error(Code::E0703, recorded.span, said);
-            return self.report(error.hint("choose one with `id`, or declare `agents`"));
+            return self.report(error!(E0703, recorded.span, "{said}";
+                hint: "choose one with `id`, or declare `agents`"));
         }
         for person in &people {
             match self.recorded.entry((index, person.id)) {
@@ -91,7 +90,7 @@ impl Elaborator<'_> {
                 }
                 Entry::Occupied(first) => {
                     let text = format!("person {} of `{}` is already used", person.id, recorded.tracks.name);
-                    let error = Diagnostic::error(Code::E0703, recorded.span, text)
+                    let error = error!(E0703, recorded.span, "{text}")
                         .related(*first.get(), "first used here")
                         .hint(format!("exclude it: `except {}`", person.id));
                     return self.report(error);
@@ -109,8 +108,8 @@ impl Elaborator<'_> {
             if !found.iter().any(|one| one.id == *id) {
                 let present: Vec<String> = found.iter().map(|one| one.id.to_string()).collect();
                 let said = format!("person {id} was not recorded at this time");
-                let error = Diagnostic::error(Code::E0703, whom.id.span, said);
-                self.note(error.hint(format!("the recorded persons are {}", present.join(", "))));
+                self.note(error!(E0703, whom.id.span, "{said}";
+                    hint: "the recorded persons are {}", present.join(", ")));
                 failed = true;
             }
         }
@@ -120,7 +119,7 @@ impl Elaborator<'_> {
         for (k, (whom, id)) in named.iter().enumerate() {
             if named[..k].iter().any(|(before, other)| other == id && before.is_group == whom.is_group) {
                 let text = format!("person {id} is listed twice");
-                return self.report(Diagnostic::error(Code::E0703, whom.id.span, text));
+                return self.report(error!(E0703, whom.id.span, "{text}"));
             }
         }
         Ok(())
@@ -174,11 +173,7 @@ impl Elaborator<'_> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole().and_then(|n| u32::try_from(n).ok()) {
             Some(id) => Ok(id),
-            None => self.report(Diagnostic::error(
-                Code::E0703,
-                expr.span,
-                "the id of a person must be a whole number",
-            )),
+            None => self.report(error!(E0703, expr.span, "the id of a person must be a whole number")),
         }
     }
 }

@@ -13,7 +13,6 @@ use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl<'a> Elaborator<'a> {
@@ -121,14 +120,10 @@ impl<'a> Elaborator<'a> {
         }
         let name = self.scene.regions[id.0 as usize].name.clone();
         let Some(Meaning::Region(_, written)) = self.scopes[0].get(&name).map(|e| e.meaning.clone()) else {
-            return self.report(Diagnostic::error(
-                Code::E0205,
-                span,
-                format!("the region `{name}` is not declared yet"),
-            ));
+            return self.report(error!(E0205, span, "the region `{name}` is not declared yet"));
         };
         if self.expanding.iter().any(|(_, n)| *n == name) {
-            return self.report(Diagnostic::error(Code::E0205, span, format!("`{name}` depends on itself")));
+            return self.report(error!(E0205, span, "`{name}` depends on itself"));
         }
         self.expand_further(span)?;
         self.expanding.push((0, name));
@@ -143,7 +138,7 @@ impl<'a> Elaborator<'a> {
         let corners: Vec<_> = points.iter().enumerate().map(corner).collect();
         let corners: Vec<Vec2> = corners.into_iter().collect::<Lowered<_>>()?;
         if corners.windows(2).all(|pair| pair[0] == pair[1]) {
-            return self.report(Diagnostic::error(Code::E0401, span, "the wall has no length"));
+            return self.report(error!(E0401, span, "the wall has no length"));
         }
         Ok(corners
             .windows(2)
@@ -156,8 +151,8 @@ impl<'a> Elaborator<'a> {
         let [a, b] = ends.each_ref().map(|end| self.corner(end));
         let segment = Segment::new(a?, b?);
         if segment.a == segment.b {
-            let error = Diagnostic::error(Code::E0401, span, "the line has no length");
-            return self.report(error.hint("write two different points: `line door: (3, 0) -- (3, 2)`"));
+            return self.report(error!(E0401, span, "the line has no length";
+                hint: "write two different points: `line door: (3, 0) -- (3, 2)`"));
         }
         Ok(segment)
     }
@@ -174,11 +169,8 @@ impl<'a> Elaborator<'a> {
             && !BuiltIn::names().chain(DISTRIBUTIONS).any(|known| known == function.name)
         {
             let name = &function.name;
-            let error = Diagnostic::error(Code::E0203, function.span, format!("unknown function `{name}`"));
-            return self.report(error.hint(format!(
-                "write `:` after a name: `wall {name}: {}`",
-                self.text(Span { start: function.span.end, ..point.span },)
-            )));
+            return self.report(error!(E0203, function.span, "unknown function `{name}`";
+                hint: "write `:` after a name: `wall {name}: {}`", self.text(Span { start: function.span.end, ..point.span },)));
         }
         self.corner(point)
     }
@@ -191,11 +183,8 @@ impl<'a> Elaborator<'a> {
                 let middle = self.point_of(centre, locals);
                 let size = self.number_of(radius, Dimension::LENGTH, locals)?;
                 if size.value <= 0.0 {
-                    return self.report(Diagnostic::error(
-                        Code::E0401,
-                        radius.span,
-                        "the radius of a circle must be positive",
-                    ));
+                    return self
+                        .report(error!(E0401, radius.span, "the radius of a circle must be positive"));
                 }
                 let circle = Shape::Circle { centre: middle?, radius: size.value };
                 self.in_scene(*span, circle.bounds().low)?;
@@ -206,7 +195,7 @@ impl<'a> Elaborator<'a> {
                 let corners = (self.point_of(a, locals), self.point_of(b, locals));
                 let (a, b) = (corners.0?, corners.1?);
                 if a.x == b.x || a.y == b.y {
-                    return self.report(Diagnostic::error(Code::E0401, *span, "the rectangle has no area"));
+                    return self.report(error!(E0401, *span, "the rectangle has no area"));
                 }
                 Ok(Shape::rectangle(a.inf(&b), a.sup(&b)))
             }
@@ -220,38 +209,24 @@ impl<'a> Elaborator<'a> {
                 let polygon =
                     Polygon { outline: outline?, holes: holes.into_iter().collect::<Lowered<_>>()? };
                 if polygon.outline.len() < 3 || polygon.holes.iter().any(|hole| hole.len() < 3) {
-                    return self.report(Diagnostic::error(
-                        Code::E0401,
-                        *span,
-                        "a polygon needs at least three corners",
-                    ));
+                    return self.report(error!(E0401, *span, "a polygon needs at least three corners"));
                 }
                 let twice = std::iter::once(&polygon.outline).chain(&polygon.holes).find_map(|ring| {
                     (0..ring.len()).map(|k| (ring[k], ring[(k + 1) % ring.len()])).find(|(a, b)| a == b)
                 });
                 if let Some((corner, _)) = twice {
-                    let error = Diagnostic::error(
-                        Code::E0401,
-                        *span,
-                        format!("the corner ({}, {}) is repeated", corner.x, corner.y),
-                    )
-                    .hint("polygons are closed automatically: do not repeat the first corner at the end");
-                    return self.report(error);
+                    return self.report(error!(E0401, *span, "the corner ({}, {}) is repeated", corner.x, corner.y;
+                        hint: "polygons are closed automatically: do not repeat the first corner at the end"));
                 }
                 if !polygon.is_simple() {
-                    return self.report(Diagnostic::error(
-                        Code::E0401,
-                        *span,
-                        "the edges of the polygon cross",
-                    ));
+                    return self.report(error!(E0401, *span, "the edges of the polygon cross"));
                 }
                 if let Some(fault) = polygon.hole_fault() {
-                    let error = Diagnostic::error(Code::E0401, *span, fault.to_string())
-                        .hint("holes must be inside the outline and must not meet each other");
-                    return self.report(error);
+                    return self.report(error!(E0401, *span, "{}", fault.to_string();
+                        hint: "holes must be inside the outline and must not meet each other"));
                 }
                 if polygon.area() <= 0.0 {
-                    return self.report(Diagnostic::error(Code::E0401, *span, "the polygon has no area"));
+                    return self.report(error!(E0401, *span, "the polygon has no area"));
                 }
                 Ok(Shape::Polygon(polygon))
             }
@@ -278,10 +253,8 @@ impl<'a> Elaborator<'a> {
     pub(super) fn in_reach(&mut self, span: Span, p: Vec2) -> Lowered<Vec2> {
         match coordinate_fault(p) {
             None => Ok(p),
-            Some(fault) => {
-                let error = Diagnostic::error(Code::E0710, span, fault);
-                self.report(error.hint("subtract a common origin from all coordinates"))
-            }
+            Some(fault) => self.report(error!(E0710, span, "{fault}";
+                    hint: "subtract a common origin from all coordinates")),
         }
     }
 
@@ -289,14 +262,13 @@ impl<'a> Elaborator<'a> {
         match self.find(&name.name, 0) {
             Some((_, Meaning::Region(id, _))) => self.region_shape(id, name.span),
             Some((_, Meaning::Doubtful)) => Err(Reported),
-            Some((_, meaning)) => {
-                let error = Diagnostic::error(
-                    Code::E0206,
-                    name.span,
-                    format!("expected a region, but `{}` is {}", name.name, meaning.noun()),
-                );
-                self.report(error)
-            }
+            Some((_, meaning)) => self.report(error!(
+                E0206,
+                name.span,
+                "expected a region, but `{}` is {}",
+                name.name,
+                meaning.noun()
+            )),
             None => {
                 let regions: Vec<String> = self.scene.regions.iter().map(|r| r.name.clone()).collect();
                 let known = regions.iter().map(String::as_str);

@@ -8,7 +8,6 @@ use crate::base::decimal::Decimal;
 use crate::base::math;
 use crate::syntax::ast::{Expr, ExprKind, UnitExpr, Values};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 /// A value of `--set`.
@@ -42,15 +41,9 @@ impl<'a> Elaborator<'a> {
         }
         match self.scopes[0].get(name).map(|e| e.meaning.clone()) {
             Some(Meaning::Param { value, range }) => Ok((value, range)),
-            Some(meaning) => {
-                let error = Diagnostic::error(
-                    Code::E0210,
-                    span,
-                    format!("`{name}` is {} and cannot be set", meaning.noun()),
-                )
-                .hint("declare it with `param`");
-                self.report(error)
-            }
+            Some(meaning) => self
+                .report(error!(E0210, span, "`{name}` is {} and cannot be set", meaning.noun();
+                    hint: "declare it with `param`")),
             None => {
                 let params: Vec<String> = self.scopes[0]
                     .entries()
@@ -89,11 +82,7 @@ impl<'a> Elaborator<'a> {
             return self.wrong_dimension(value.span, declared.dimension, number.dimension);
         }
         if !number.value.is_finite() {
-            return self.report(Diagnostic::error(
-                Code::E0405,
-                value.span,
-                "the value is not a finite number",
-            ));
+            return self.report(error!(E0405, value.span, "the value is not a finite number"));
         }
         // A range that depends on other parameters is that of the world in which the value is set.
         if let Some((low, high)) = range
@@ -121,7 +110,7 @@ impl<'a> Elaborator<'a> {
             let at = if number.value < low.value { at.0 } else { at.1 };
             let [low, high] = [low, high].map(|n| self.shown(default, n));
             let said = format!("`{name}` must be between {low} and {high}");
-            return self.report(Diagnostic::error(Code::E0405, at, said).hanging_on(place));
+            return self.report(error!(E0405, at, "{said}").hanging_on(place));
         }
         Ok(())
     }
@@ -161,12 +150,11 @@ impl<'a> Elaborator<'a> {
             _ => Number { dimension: first.dimension, ..step },
         };
         if step.value <= 0.0 || last.value < first.value {
-            let error = Diagnostic::error(
-                Code::E0405,
+            return self.report(error!(
+                E0405,
                 if step.value <= 0.0 { by.span } else { to.span },
-                "the values must go up from the first to the last by a positive step",
-            );
-            return self.report(error);
+                "the values must go up from the first to the last by a positive step"
+            ));
         }
         let count = ((last.value - first.value) / step.value + 1e-9).floor();
         if count >= most as f64 {
@@ -195,7 +183,7 @@ impl<'a> Elaborator<'a> {
         for (k, (number, value)) in numbers.iter().zip(list).enumerate() {
             if let Some(first) = numbers[..k].iter().position(|known| known.value == number.value) {
                 let said = format!("the value `{}` is listed twice", self.text(value.span));
-                let error = Diagnostic::error(Code::E0405, value.span, said);
+                let error = error!(E0405, value.span, "{said}");
                 return self
                     .report(error.related(list[first].span, "first listed here").hint("remove one of them"));
             }
@@ -222,7 +210,7 @@ impl<'a> Elaborator<'a> {
             None
         };
         if let Some((at, said)) = error {
-            return self.report(Diagnostic::error(Code::E0405, at, said));
+            return self.report(error!(E0405, at, "{said}"));
         }
         let factor = math::ln(10.0) / count.value;
         let steps = (math::ln(last.value / first.value) / factor + 1e-9).floor();
@@ -244,7 +232,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn too_many<T>(&mut self, at: Span, most: usize) -> Lowered<T> {
-        self.report(Diagnostic::error(Code::E0405, at, format!("at most {most} values are allowed")))
+        self.report(error!(E0405, at, "at most {most} values are allowed"))
     }
 
     /// A value in the unit in which the default is written.

@@ -15,8 +15,6 @@ use crate::base::math;
 use crate::model::{Family, Law, Route, Source};
 use crate::syntax::ast::process::SourceDecl;
 use crate::syntax::ast::{Field, Value};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use std::sync::Arc;
 
 /// Most places that are kept without a `limit`.
@@ -80,13 +78,8 @@ impl<'a> Elaborator<'a> {
     /// Agents of a source leave at the last goal.
     fn way_out(&mut self, decl: &'a SourceDecl, fields: &[&'a Field]) -> Lowered<Route> {
         let Some(field) = fields.iter().find(|field| field.name.name == "route") else {
-            let error = Diagnostic::error(
-                Code::E0209,
-                decl.name.span,
-                format!("source `{}` has no `route`", decl.name.name),
-            )
-            .hint("write `route = …`; agents of a source leave at its last goal");
-            return self.report(error);
+            return self.report(error!(E0209, decl.name.span, "source `{}` has no `route`", decl.name.name;
+                hint: "write `route = …`; agents of a source leave at its last goal"));
         };
         match self.route(&field.value, &Locals::default())? {
             Route::Legs { legs, .. } => Ok(Route::Legs { legs, then_leave: true }),
@@ -97,28 +90,22 @@ impl<'a> Elaborator<'a> {
     /// The time between arrivals.
     fn interval(&mut self, decl: &'a SourceDecl, fields: &[&'a Field]) -> Lowered<Law> {
         let Some(field) = fields.iter().find(|field| field.name.name == "every") else {
-            let error = Diagnostic::error(
-                Code::E0209,
-                decl.name.span,
-                format!("source `{}` has no `every`", decl.name.name),
-            )
-            .hint("write the time between two arrivals: `every = exponential(4 s)`");
-            return self.report(error);
+            return self.report(error!(E0209, decl.name.span, "source `{}` has no `every`", decl.name.name;
+                hint: "write the time between two arrivals: `every = exponential(4 s)`"));
         };
         let law = self.law(&field.value, Dimension::TIME, &Locals::default())?;
         let span = value_span(&field.value);
         if law.bounds().0 < 0.0 {
-            let error = Diagnostic::error(Code::E0405, span, "the time between arrivals cannot be negative");
+            let error = error!(E0405, span, "the time between arrivals cannot be negative");
             let text = self.text(span);
             return self.report(truncate(error, &law, &text));
         }
         if law.mean() > 0.0 {
             Ok(law)
         } else {
-            self.report(Diagnostic::error(
-                Code::E0405,
-                span,
-                "the time between arrivals is 0: infinitely many agents would arrive at once",
+            self.report(error!(
+                E0405,
+                span, "the time between arrivals is 0: infinitely many agents would arrive at once"
             ))
         }
     }
@@ -127,11 +114,7 @@ impl<'a> Elaborator<'a> {
         let Some(field) = fields.iter().find(|field| field.name.name == "limit") else { return Ok(None) };
         match &field.value {
             Value::Plain(expr) => self.count(expr).map(Some),
-            other => self.report(Diagnostic::error(
-                Code::E0305,
-                value_span(other),
-                "expected the largest number of agents",
-            )),
+            other => self.report(error!(E0305, value_span(other), "expected the largest number of agents")),
         }
     }
 
@@ -163,7 +146,7 @@ impl<'a> Elaborator<'a> {
             (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
             (limit, _) => {
                 let text = format!("about {expected:.0} agents would arrive by source `{}`", decl.name.name);
-                let error = Diagnostic::error(Code::E0913, span.unwrap_or(decl.name.span), text);
+                let error = error!(E0913, span.unwrap_or(decl.name.span), "{text}");
                 self.report(error.hint(if limit.is_none() {
                     "write `limit`, the largest number of agents present at once, or shorten the horizon"
                 } else {

@@ -9,7 +9,6 @@ use super::symbols::unknown;
 use crate::model::{GaitRule, SearchRule};
 use crate::syntax::ast::{Field, ScenarioFile, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use std::sync::Arc;
 
 /// Ways of choosing steps.
@@ -55,7 +54,7 @@ impl Elaborator<'_> {
             value if word(value) == Some("synthetic") => GaitRule::Synthetic,
             value => {
                 let said = "`gait` must be `synthetic`, or `learned` with a file";
-                let error = Diagnostic::error(Code::E0305, value_span(value), said);
+                let error = error!(E0305, value_span(value), "{said}");
                 return self
                     .report(error.hint("write `gait = synthetic` or `gait = learned \"walkers.gait\"`"));
             }
@@ -67,8 +66,8 @@ impl Elaborator<'_> {
     fn search(&mut self, value: &Value, locals: &Locals) -> Lowered<SearchRule> {
         let Some((name, arguments)) = call(value) else {
             let said = "expected `guided(…)`, `hybrid_a_star(…)` or `as_published()`";
-            let error = Diagnostic::error(Code::E0305, value_span(value), said);
-            return self.report(error.hint("write for example `search = guided(candidates = 24)`"));
+            return self.report(error!(E0305, value_span(value), "{said}";
+                hint: "write for example `search = guided(candidates = 24)`"));
         };
         match name.name.as_str() {
             "guided" => {

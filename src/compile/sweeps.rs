@@ -4,8 +4,6 @@ use super::elaborator::{Locals, Lowered};
 use super::number::Number;
 use super::queries::Compiler;
 use super::settings::{MOST_POINTS, Setting};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 
 impl Compiler<'_> {
@@ -15,8 +13,7 @@ impl Compiler<'_> {
         let mut seen: Vec<&Setting> = Vec::new();
         for setting in self.input.settings {
             if seen.iter().any(|s| s.name == setting.name) {
-                let error =
-                    Diagnostic::error(Code::E0210, setting.span, format!("`{}` is set twice", setting.name));
+                let error = error!(E0210, setting.span, "`{}` is set twice", setting.name);
                 self.sites[plain].elaborator.note(error);
                 let _ = self.set_values(plain, setting);
                 continue;
@@ -25,12 +22,10 @@ impl Compiler<'_> {
             let Ok(values) = self.set_values(plain, setting) else { continue };
             let combinations = points.len().saturating_mul(values.len());
             if combinations > MOST_POINTS {
-                let error = Diagnostic::error(
-                    Code::E0405,
+                let error = error!(
+                    E0405,
                     setting.span,
-                    format!(
-                        "a call can have at most {MOST_POINTS} combinations of values (got {combinations})"
-                    ),
+                    "a call can have at most {MOST_POINTS} combinations of values (got {combinations})"
                 );
                 self.sites[plain].elaborator.note(error.hint("sweep fewer parameters, or use larger steps"));
                 continue;

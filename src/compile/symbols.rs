@@ -118,7 +118,7 @@ impl<'a> Scope<'a> {
     /// Declares a name; a second declaration is an error that shows both places.
     pub(super) fn declare(&mut self, name: &str, span: Span, meaning: Meaning<'a>) -> Result<(), Diagnostic> {
         if let Some(first) = self.entries.get(name) {
-            return Err(Diagnostic::error(Code::E0202, span, format!("`{name}` is declared twice"))
+            return Err(error!(E0202, span, "`{name}` is declared twice")
                 .related(first.span, "first declared here")
                 .hint("rename one of them"));
         }

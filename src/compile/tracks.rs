@@ -59,7 +59,7 @@ impl<'a> Elaborator<'a> {
             }),
             (None, None) => {
                 let said = format!("`{}` is a stream, which only `smc advise` can read", name.name);
-                let error = Diagnostic::error(Code::E0702, name.span, said);
+                let error = error!(E0702, name.span, "{said}");
                 self.report(
                     error.hint("use `smc advise`, or name a file: `tracks hotel = eth_biwi \"obsmat.txt\"`"),
                 )
@@ -85,7 +85,7 @@ impl<'a> Elaborator<'a> {
             let (name, at) = (field.name.name.as_str(), value_span(&field.value));
             if body[..k].iter().any(|before| before.name.name == name) {
                 let said = format!("`{name}` is set twice");
-                self.note(Diagnostic::error(Code::E0202, field.name.span, said));
+                self.note(error!(E0202, field.name.span, "{said}"));
                 failed = true;
                 continue;
             }
@@ -93,8 +93,7 @@ impl<'a> Elaborator<'a> {
                 "velocity" => {
                     read.velocity = super::call_arguments::word(&field.value).and_then(Velocity::from_name);
                     if read.velocity.is_none() {
-                        let error =
-                            Diagnostic::error(Code::E0305, at, "`velocity` must be `seen` or `recorded`");
+                        let error = error!(E0305, at, "`velocity` must be `seen` or `recorded`");
                         self.note(error);
                         failed = true;
                     }
@@ -120,11 +119,11 @@ impl<'a> Elaborator<'a> {
 
     fn memory(&mut self, value: &'a Value, at: Span) -> Lowered<f64> {
         let Value::Plain(expr) = value else {
-            return self.report(Diagnostic::error(Code::E0305, at, "expected a time such as `1 s`"));
+            return self.report(error!(E0305, at, "expected a time such as `1 s`"));
         };
         let number = self.number_of(expr, Dimension::TIME, &Locals::default())?;
         if number.value < 0.0 {
-            return self.report(Diagnostic::error(Code::E0405, at, "`memory` cannot be negative"));
+            return self.report(error!(E0405, at, "`memory` cannot be negative"));
         }
         Ok(number.value)
     }
@@ -166,7 +165,7 @@ fn read_into(reading: &mut Reading, field: &Field) -> Result<(), Diagnostic> {
         Value::Plain(Expr { kind: ExprKind::Quantity(Quantity { value, unit: None }), .. }) => value.to_f64(),
         _ => f64::NAN,
     };
-    let wrong = |said: &str| Diagnostic::error(Code::E0305, value_span(&field.value), said);
+    let wrong = |said: &str| error!(E0305, value_span(&field.value), "{said}");
     match field.name.name.as_str() {
         "trial" if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 => {
             reading.trial = Some(number as u64);
@@ -192,5 +191,5 @@ fn unreadable(span: Span, errors: &[LineError]) -> Diagnostic {
             lines => format!("{lines} lines of this file cannot be read"),
         },
     };
-    Diagnostic::error(Code::E0702, span, title).label(format!("{}{rest}", shown.join("; ")))
+    error!(E0702, span, "{title}").label(format!("{}{rest}", shown.join("; ")))
 }

@@ -9,8 +9,6 @@ use super::typed::Typed;
 use crate::base::tick::Tick;
 use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
 use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 /// Most options of a `moves` declaration.
@@ -39,11 +37,7 @@ impl<'a> Elaborator<'a> {
                                     let at = value_span(value);
                                     let said = "a waiting time cannot be negative";
                                     let text = self.text(at);
-                                    self.report(truncate(
-                                        Diagnostic::error(Code::E0405, at, said),
-                                        &law,
-                                        &text,
-                                    ))
+                                    self.report(truncate(error!(E0405, at, "{said}"), &law, &text))
                                 }
                                 law => law.map(Leg::Wait),
                             }
@@ -54,19 +48,12 @@ impl<'a> Elaborator<'a> {
                 if let Some(span) = route.then_leave
                     && !legs.iter().any(|leg| matches!(leg, Leg::To(_)))
                 {
-                    return self.report(Diagnostic::error(
-                        Code::E0408,
-                        span,
-                        "`then leave` needs a goal before it",
-                    ));
+                    return self.report(error!(E0408, span, "`then leave` needs a goal before it"));
                 }
                 Ok(Route::Legs { legs, then_leave: route.then_leave.is_some() })
             }
-            other => {
-                let error = Diagnostic::error(Code::E0305, value_span(other), "expected a route")
-                    .hint("write goals joined by arrows: `(9, 3) -> exit`");
-                self.report(error)
-            }
+            other => self.report(error!(E0305, value_span(other), "expected a route";
+                    hint: "write goals joined by arrows: `(9, 3) -> exit`")),
         }
     }
 
@@ -78,7 +65,7 @@ impl<'a> Elaborator<'a> {
             && locals.names.iter().all(|(bound, _)| bound != name)
         {
             let said = format!("expected a region or a point as a goal, found {}", meaning.noun());
-            return self.report(Diagnostic::error(Code::E0305, expr.span, said));
+            return self.report(error!(E0305, expr.span, "{said}"));
         }
         match self.lower(expr, locals)? {
             Typed::Region(id) => Ok(Goal::Region(id)),
@@ -107,7 +94,7 @@ impl<'a> Elaborator<'a> {
             }
             if let Some(first) = moves.iter().position(|known| known.key().0 == key) {
                 let said = format!("the {what} of `{}` are declared twice", name.name);
-                let error = Diagnostic::error(Code::E0406, name.span, said)
+                let error = error!(E0406, name.span, "{said}")
                     .related(declared[first], "first declared here")
                     .hint("write all options in one list");
                 self.note(error);
@@ -130,25 +117,18 @@ impl<'a> Elaborator<'a> {
         }
         let agent = agent?;
         let Some(duration) = duration? else {
-            return self.report(Diagnostic::error(
-                Code::E0406,
-                decl.duration.span,
-                "the duration of a move must be finite",
-            ));
+            return self.report(error!(E0406, decl.duration.span, "the duration of a move must be finite"));
         };
         if duration == Tick(0) {
-            let error =
-                Diagnostic::error(Code::E0406, decl.duration.span, "the duration of a move must be positive");
+            let error = error!(E0406, decl.duration.span, "the duration of a move must be positive");
             return self.report(error);
         }
         if failed {
             return Err(super::elaborator::Reported);
         }
         if options.is_empty() {
-            return self.report(
-                Diagnostic::error(Code::E0406, decl.span, "the moves have no option")
-                    .hint("write for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"),
-            );
+            return self.report(error!(E0406, decl.span, "the moves have no option";
+                    hint: "write for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"));
         }
         Ok(Moves { agent, duration, options, routes, paths: None })
     }
@@ -162,12 +142,12 @@ impl<'a> Elaborator<'a> {
                 "the number of alternatives must be a whole number from 1 to {MOST_PATHS} (got {})",
                 number.value
             );
-            return self.report(Diagnostic::error(Code::E0406, decl.alternatives.span, said));
+            return self.report(error!(E0406, decl.alternatives.span, "{said}"));
         };
         let agent = agent?;
         if people.agents[agent.0 as usize].body.planner.is_none() {
             let said = format!("`{}` does not plan, and has no paths", people.agents[agent.0 as usize].name);
-            let error = Diagnostic::error(Code::E0406, decl.agent.span, said);
+            let error = error!(E0406, decl.agent.span, "{said}");
             return self
                 .report(error.hint(
                     "declare its kind as `planned`: `kind planner: planned { limit speed = 1.5 m/s }`",
@@ -196,11 +176,8 @@ impl<'a> Elaborator<'a> {
         let is_one = matches!(&typed, Typed::Agents { set, particle: true } if set.members.len() == 1);
         if matches!(typed, Typed::Agents { .. }) && !is_one {
             let said = format!("{what} must belong to one agent");
-            let error = Diagnostic::error(Code::E0406, expr.span, said);
-            return self.report(error.hint(format!(
-                "write one member, such as `{}[1]`, or declare a single agent: `agent user: …`",
-                name.name
-            )));
+            return self.report(error!(E0406, expr.span, "{said}";
+                hint: "write one member, such as `{}[1]`, or declare a single agent: `agent user: …`", name.name));
         }
         match self.as_agent(typed, expr.span)? {
             Who::Agent(agent) if people.agents.get(agent.0 as usize).is_some() => Ok(agent),
@@ -241,14 +218,13 @@ impl<'a> Elaborator<'a> {
                 let route = self.route(written, &Locals::default())?;
                 let goes = matches!(&route, Route::Legs { legs, .. } if legs.iter().any(|leg| matches!(leg, Leg::To(_))));
                 if !goes {
-                    let error =
-                        Diagnostic::error(Code::E0406, value_span(written), format!("`{label}` has no goal"))
-                            .hint(format!("write for example `{label} = (9, 3) -> exit`"));
+                    let error = error!(E0406, value_span(written), "`{label}` has no goal";
+                            hint: "write for example `{label} = (9, 3) -> exit`");
                     return self.report(error);
                 }
                 if options.iter().any(|(known, _)| *known == label) {
-                    let error = Diagnostic::error(Code::E0406, *span, format!("`{label}` is listed twice"));
-                    return self.report(error.hint("give one of them another name"));
+                    return self.report(error!(E0406, *span, "`{label}` is listed twice";
+                        hint: "give one of them another name"));
                 }
                 options.push((label, Move::Route(routes.len())));
                 routes.push(route);
@@ -256,7 +232,7 @@ impl<'a> Elaborator<'a> {
             }
             MoveOption::Stop(span) => {
                 if options.iter().any(|(_, m)| *m == Move::Stop) {
-                    return self.report(Diagnostic::error(Code::E0406, *span, "`stop` is listed twice"));
+                    return self.report(error!(E0406, *span, "`stop` is listed twice"));
                 }
                 options.push(("stop".to_owned(), Move::Stop));
                 Ok(())
@@ -273,21 +249,16 @@ impl<'a> Elaborator<'a> {
                 );
                 let (from, to, by) = (ends.0?.value, ends.1?.value, ends.2?.value);
                 if by <= 0.0 || to < from {
-                    let error = Diagnostic::error(
-                        Code::E0406,
-                        *span,
-                        "headings must go up from the first to the last by a positive angle",
-                    );
-                    return self.report(error);
+                    return self.report(error!(
+                        E0406,
+                        *span, "headings must go up from the first to the last by a positive angle"
+                    ));
                 }
                 // As a float: a count of headings can be larger than any whole number of the machine.
                 let steps = ((to - from) / by + 1e-9).floor();
                 if steps >= MOST_OPTIONS.saturating_sub(options.len()) as f64 {
-                    return self.report(Diagnostic::error(
-                        Code::E0406,
-                        *span,
-                        format!("the moves have more than {MOST_OPTIONS} options"),
-                    ));
+                    return self
+                        .report(error!(E0406, *span, "the moves have more than {MOST_OPTIONS} options"));
                 }
                 for k in 0..=steps as usize {
                     let angle = from + by * k as f64;
@@ -316,7 +287,7 @@ impl<'a> Elaborator<'a> {
             } else {
                 format!("`{label}` is listed twice, first as `{known}`")
             };
-            return self.report(Diagnostic::error(Code::E0406, span, text));
+            return self.report(error!(E0406, span, "{text}"));
         }
         options.push((label, Move::Heading(angle)));
         Ok(())

@@ -81,7 +81,7 @@ impl<'a> Elaborator<'a> {
                 _ => None,
             };
             if let Some(text) = reserved {
-                self.note(Diagnostic::error(Code::E0202, name.span, text).hint("choose another name"));
+                self.note(error!(E0202, name.span, "{text}"; hint: "choose another name"));
             }
             self.enter(name, meaning);
         }
@@ -98,12 +98,8 @@ impl<'a> Elaborator<'a> {
                     PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
                 };
                 if let Some(first) = self.scopes[0].get(&name.name) {
-                    let error = Diagnostic::error(
-                        Code::E0202,
-                        name.span,
-                        format!("`{}` is already a name of the scenario", name.name),
-                    )
-                    .related(first.span, "declared here");
+                    let error = error!(E0202, name.span, "`{}` is already a name of the scenario", name.name)
+                        .related(first.span, "declared here");
                     self.note(error);
                     // Its meaning in this file is uncertain, so its uses cause no further errors.
                     self.broken.insert((self.scopes.len(), name.name.clone()));
@@ -219,7 +215,7 @@ impl<'a> Elaborator<'a> {
         let titles: Vec<Span> = titles.collect();
         if let [first, others @ ..] = titles.as_slice() {
             for other in others {
-                let error = Diagnostic::error(Code::E0202, *other, "a scenario can have only one title");
+                let error = error!(E0202, *other, "a scenario can have only one title");
                 self.note(error.related(*first, "first title").hint("remove one of them"));
             }
         }
@@ -289,11 +285,11 @@ impl<'a> Elaborator<'a> {
         let (Ok(low), Ok(high)) = ends else { return };
         if low.value > high.value {
             self.any_start = true;
-            self.note(Diagnostic::error(Code::E0405, place, "the range is empty"));
+            self.note(error!(E0405, place, "the range is empty"));
         } else if !is_replaced && (number.value < low.value || number.value > high.value) {
             let text = format!("the default of `{}` is outside its range", name.name);
             self.any_start = true;
-            self.note(Diagnostic::error(Code::E0405, value.span, text).hanging_on(place));
+            self.note(error!(E0405, value.span, "{text}").hanging_on(place));
         }
     }
 
@@ -342,8 +338,7 @@ impl<'a> Elaborator<'a> {
             };
             if let Some((_, first)) = found[slot] {
                 let error =
-                    Diagnostic::error(Code::E0202, name.span, format!("`{}` is set twice", name.name))
-                        .related(first, "first set here");
+                    error!(E0202, name.span, "`{}` is set twice", name.name).related(first, "first set here");
                 self.note(error);
                 failed = true;
             }
@@ -378,12 +373,8 @@ impl<'a> Elaborator<'a> {
             let names: Vec<&str> = missing.iter().map(|(name, _)| *name).collect();
             let lines: Vec<String> =
                 missing.iter().map(|(name, value)| format!("`{name} = {value}`")).collect();
-            let error = Diagnostic::error(
-                Code::E0505,
-                place,
-                format!("the scenario has no {}", names.join(" and no ")),
-            );
-            self.note(error.hint(format!("write {}", lines.join(" and "))));
+            self.note(error!(E0505, place, "the scenario has no {}", names.join(" and no ");
+                hint: "write {}", lines.join(" and ")));
             failed = true;
         }
         if free {
@@ -409,11 +400,7 @@ impl<'a> Elaborator<'a> {
             let _ = self.number_of(horizon, Dimension::TIME, &Locals::of(0));
         }
         let Some(exact) = length?.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
-            return self.report(Diagnostic::error(
-                Code::E0505,
-                step.span,
-                "the step must be a positive time",
-            ));
+            return self.report(error!(E0505, step.span, "the step must be a positive time"));
         };
         self.clock = Clock::Stepped(exact);
         if !sure_step {
@@ -433,11 +420,11 @@ impl<'a> Elaborator<'a> {
     fn settle_continuous(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
         let end = self.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
         if end.value <= 0.0 {
-            return self.report(Diagnostic::error(Code::E0505, horizon.span, "the horizon must be positive"));
+            return self.report(error!(E0505, horizon.span, "the horizon must be positive"));
         }
         let tick = moments::tick(end.exact, end.value, &self.measured);
         let Some((tick, last)) = tick.and_then(|(tick, end)| Some((tick, end.div(tick)?.as_whole()?))) else {
-            return self.report(Diagnostic::error(Code::E0501, horizon.span, "the time is out of range"));
+            return self.report(error!(E0501, horizon.span, "the time is out of range"));
         };
         self.clock = Clock::Jumps(tick);
         self.horizon = Tick(last as u64);
@@ -447,18 +434,12 @@ impl<'a> Elaborator<'a> {
     fn settle_horizon(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
         let end = self.time(horizon, &Locals::of(0))?;
         match end {
-            Some(Tick(0)) => {
-                self.report(Diagnostic::error(Code::E0505, horizon.span, "the horizon must be positive"))
-            }
+            Some(Tick(0)) => self.report(error!(E0505, horizon.span, "the horizon must be positive")),
             Some(tick) if tick.0 <= MOST_TICKS => {
                 self.horizon = tick;
                 if failed { Err(Reported) } else { Ok(()) }
             }
-            _ => self.report(Diagnostic::error(
-                Code::E0505,
-                horizon.span,
-                format!("a trial can have at most {MOST_TICKS} steps"),
-            )),
+            _ => self.report(error!(E0505, horizon.span, "a trial can have at most {MOST_TICKS} steps")),
         }
     }
 }

@@ -147,7 +147,7 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
                 && let Err(error) = LearnedGait::read(bytes)
             {
                 let title = format!("`{}` is no gait: {error}", request.path);
-                reader.report(Diagnostic::error(Code::E0723, request.span, title).hint(FIT_AGAIN));
+                reader.report(error!(E0723, request.span, "{title}").hint(FIT_AGAIN));
             }
         }
         files.insert(request.path, contents);

@@ -83,7 +83,7 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
                 )
             };
             let error = match world.place_of(agent) {
-                Some(span) => Diagnostic::error(Code::E0803, span, said),
+                Some(span) => error!(E0803, span, "{said}"),
                 None => Diagnostic::placeless(Code::E0803, said),
             };
             errors.push(error.hint(hint));

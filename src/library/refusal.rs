@@ -17,7 +17,7 @@ pub fn refusal(fault: &Fault) -> Diagnostic {
     match fault {
         Fault::Placement { reason, place } => {
             let error = match place {
-                Some(span) => Diagnostic::error(Code::E0801, *span, reason.as_str()),
+                Some(span) => error!(E0801, *span, "{}", reason.as_str()),
                 None => Diagnostic::placeless(Code::E0801, reason.as_str()),
             };
             error.hint("use fewer agents, a larger shape to start in, or smaller radii")
@@ -26,10 +26,10 @@ pub fn refusal(fault: &Fault) -> Diagnostic {
             Some(first) => refusal(first),
             None => Diagnostic::placeless(Code::E0801, fault.to_string()),
         },
-        Fault::Procedure { place, reason } => Diagnostic::error(Code::E0604, *place, reason.to_string())
-            .hint("see `smc explain E0604` for the arguments of each procedure"),
-        Fault::Memory { place, .. } => Diagnostic::error(Code::E0923, *place, fault.to_string())
-            .hint("one value is stored for each trial of each `E` and `Q`: write a smaller `--max-trials`, or select fewer queries with `--only`"),
+        Fault::Procedure { place, reason } => error!(E0604, *place, "{}", reason.to_string();
+            hint: "see `smc explain E0604` for the arguments of each procedure"),
+        Fault::Memory { place, .. } => error!(E0923, *place, "{}", fault.to_string();
+            hint: "one value is stored for each trial of each `E` and `Q`: write a smaller `--max-trials`, or select fewer queries with `--only`"),
         Fault::Model(flaw) => of_model(flaw),
         Fault::Statistics(reason) => Diagnostic::placeless(Code::E0604, reason.to_string())
             .hint("see `smc explain E0604` for the arguments of each procedure"),
@@ -37,8 +37,9 @@ pub fn refusal(fault: &Fault) -> Diagnostic {
             .hint("use shorter bounds or a longer step, which need less memory"),
         Fault::Unsuitable => Diagnostic::placeless(Code::E0603, fault.to_string())
             .hint("see `smc explain E0603` for the procedures of each query"),
-        Fault::Threads(_) => Diagnostic::placeless(Code::E0705, fault.to_string())
-            .hint("use fewer threads: `--threads 1`"),
+        Fault::Threads(_) => {
+            Diagnostic::placeless(Code::E0705, fault.to_string()).hint("use fewer threads: `--threads 1`")
+        }
     }
 }
 

@@ -38,7 +38,7 @@ impl Cast {
                 None => {
                     let said = format!("`{}` is not in the recording `{tracks}`", name.name);
                     let hint = "what was never recorded cannot be compared with a recording: remove it";
-                    wrong.push(Diagnostic::error(Code::E0709, name.span, said).hint(hint));
+                    wrong.push(error!(E0709, name.span, "{said}"; hint: "{hint}"));
                 }
             }
         }
@@ -59,7 +59,7 @@ impl Cast {
         self.named.map_or(Ok(()), |span| {
             let said = "with another user, nobody knows who plays the part of this person";
             let hint = "declare others by their part: `group of`, `except group of`";
-            Err(Diagnostic::error(Code::E0709, span, said).hint(hint))
+            Err(error!(E0709, span, "{said}"; hint: "{hint}"))
         })
     }
 }

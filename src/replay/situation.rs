@@ -61,7 +61,7 @@ impl Replay {
         let file = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
         let recorded = file.format.read(file.bytes, &file.reading).map_err(|errors| {
             let first = errors.first().map_or(String::new(), ToString::to_string);
-            vec![Diagnostic::error(Code::E0702, file.place, "the recording cannot be read").label(first)]
+            vec![error!(E0702, file.place, "the recording cannot be read").label(first)]
         })?;
         let cast = Cast::of(input.scenario, tracks)?;
         let who = match whose {

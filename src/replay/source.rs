@@ -39,13 +39,13 @@ pub fn source<'f>(file: &ScenarioFile, files: &'f Files, name: &str) -> Result<T
         let hint = format!("declare them in the scenario: `tracks {name} = eth_biwi \"obsmat.txt\"`");
         return wrong(format!("`--replay {name}`: the scenario has no such recording"), hint);
     };
-    let bytes = files.get(&path.value).map_err(|reason| Diagnostic::error(Code::E0701, path.span, reason))?;
+    let bytes = files.get(&path.value).map_err(|reason| error!(E0701, path.span, "{reason}"))?;
     let reading = reading_of(body)?;
     match Format::from_name(&format.name) {
         Some(format) => Ok(TracksFile { format, bytes, reading, place: path.span }),
         None => {
             let said = format!("`{}` is no format of recordings", format.name);
-            Err(Diagnostic::error(Code::E0702, path.span, said))
+            Err(error!(E0702, path.span, "{said}"))
         }
     }
 }

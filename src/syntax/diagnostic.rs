@@ -4,6 +4,21 @@ use super::codes::Code;
 use super::source::Span;
 use crate::base::visible::shortened;
 
+/// An error with its code, its place, its title and, if there is one, its hint; the last two as in `format!`.
+///
+/// ```text
+/// error!(E0303, span, "expected {wanted}, found {found}"; hint: "write `{number} {wanted}`")
+/// ```
+macro_rules! error {
+    ($code:ident, $span:expr, $($title:expr),+ $(; hint: $($hint:expr),+)?) => {
+        $crate::syntax::diagnostic::Diagnostic::error(
+            $crate::syntax::codes::Code::$code,
+            $span,
+            format!($($title),+),
+        )$(.hint(format!($($hint),+)))?
+    };
+}
+
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {

@@ -1,8 +1,10 @@
 //! Floor 1: both languages, from bytes to syntax trees and back, and the diagnostics about them.
 
+#[macro_use]
+pub mod diagnostic;
+
 pub mod ast;
 pub mod codes;
-pub mod diagnostic;
 pub mod keywords;
 pub mod parse;
 pub mod print;

@@ -219,7 +219,7 @@ mod tests {
     fn places_of_two_sources_and_places_out_of_range() {
         let first = Source::new(SourceId(0), "a.scn", "horizon = 3 m\n");
         let second = Source::new(SourceId(1), "b.bltl", "é = 1");
-        let diagnostic = Diagnostic::error(Code::E0101, Span::new(SourceId(0), 10, 13), "expected a time")
+        let diagnostic = error!(E0101, Span::new(SourceId(0), 10, 13), "expected a time")
             .label("this is a length")
             .related(Span::new(SourceId(1), 1, 900), "used here")
             .hint("write `3 s`");
@@ -243,9 +243,8 @@ mod tests {
     fn marked(before: &str, after: &str) -> String {
         let source = Source::new(SourceId(0), "a.scn", format!("a = 1\n{before}x = 2 s{after}\nb = 1\n"));
         let at = 6 + before.len();
-        let diagnostic =
-            Diagnostic::error(Code::E0101, Span::new(SourceId(0), at, at + 1), "expected a time")
-                .related(Span::new(SourceId(0), at + 4, at + 5), "a number");
+        let diagnostic = error!(E0101, Span::new(SourceId(0), at, at + 1), "expected a time")
+            .related(Span::new(SourceId(0), at + 4, at + 5), "a number");
         render(&[diagnostic], &[source], false)
     }
 
@@ -257,7 +256,7 @@ mod tests {
             let at = text.len() - line.len();
             let source = Source::new(SourceId(0), "a.scn", text);
             let name = |at: usize| Span::new(SourceId(0), at + 6, at + 7);
-            let diagnostic = Diagnostic::error(Code::E0202, name(at), "`a` is declared twice")
+            let diagnostic = error!(E0202, name(at), "`a` is declared twice")
                 .related(name(0), "first declared here")
                 .related(name(line.len()), "and here");
             [false, true]

@@ -9,7 +9,6 @@ use crate::data::tracks::Batch;
 use crate::library::Parsed;
 use crate::replay::source;
 use crate::report::advice;
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The batches of the tracks of a name in a model.
@@ -22,7 +21,7 @@ pub(super) fn batches(
     let found = file.format.read_batches(file.bytes, &file.reading, arguments.velocity);
     let batches = found.map_err(|errors| {
         let first = errors.first().map_or(String::new(), ToString::to_string);
-        Diagnostic::error(Code::E0702, file.place, "the recording cannot be read").label(first)
+        error!(E0702, file.place, "the recording cannot be read").label(first)
     })?;
     let first = batches.first().map_or(0.0, |batch| batch.time);
     let last = batches.last().map_or(0.0, |batch| batch.time);

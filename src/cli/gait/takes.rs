@@ -90,8 +90,8 @@ impl Takes {
                 }
             },
             Err(reason) => match row {
-                Some(row) => Diagnostic::error(Code::E0720, row, reason)
-                    .hint("names of files are relative to the folder of the table"),
+                Some(row) => error!(E0720, row, "{reason}";
+                    hint: "names of files are relative to the folder of the table"),
                 None => complaint::input(reason),
             },
         };
@@ -103,7 +103,7 @@ impl Takes {
     fn refuse(&mut self, source: Source, errors: &[LineError]) {
         let one = |error: &LineError| {
             let hint = if error.message.contains(NO_RATE) { RATE_HINT } else { HINT };
-            Diagnostic::error(Code::E0720, span(&source, error), error.message.clone()).hint(hint)
+            error!(E0720, span(&source, error), "{}", error.message.clone(); hint: "{hint}")
         };
         self.found.extend(errors.iter().take(SHOWN).map(one));
         if let Some(more) = errors.len().checked_sub(SHOWN + 1) {
@@ -217,7 +217,7 @@ impl Takes {
             if !self.names.insert(whole.clone()) {
                 let place = span(&source, &LineError::of_file(""));
                 let title = format!("take `{}` is given twice", take.name);
-                self.found.push(Diagnostic::error(Code::E0720, place, title).hint("give each take once"));
+                self.found.push(error!(E0720, place, "{title}"; hint: "give each take once"));
                 told = true;
                 continue;
             }
@@ -290,7 +290,7 @@ fn strange(
     let is_misread = said.is_some() || cure.is_some();
     let said = said.map_or_else(String::new, |said| format!(": {said}"));
     let found = match cut {
-        Err(none) if is_misread => Diagnostic::error(Code::E0721, place, format!("{none}{said}")),
+        Err(none) if is_misread => error!(E0721, place, "{none}{said}"),
         Err(none) => Diagnostic::warning(Code::W0720, place, none.to_string()),
         Ok(_) => Diagnostic::warning(Code::W0720, place, format!("take `{name}` is not plausible{said}")),
     };

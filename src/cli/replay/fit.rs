@@ -132,7 +132,7 @@ fn few(replay: &Replay, count: usize) -> Diagnostic {
 /// An error of the tracks.
 fn of_tracks(replay: &Replay, said: String) -> Diagnostic {
     match replay.place_of_tracks() {
-        Some(place) => Diagnostic::error(Code::E0713, place, said),
+        Some(place) => error!(E0713, place, "{said}"),
         None => Diagnostic::placeless(Code::E0713, said),
     }
 }

@@ -156,7 +156,7 @@ impl<'a> Elaborator<'a> {
             other => {
                 let law = self.law(other, dimension, locals)?;
                 return match parameter.refuses(&law) {
-                    Some(reason) => self.report(Diagnostic::error(Code::E0405, span, reason)),
+                    Some(reason) => self.report(error!(E0405, span, "{reason}")),
                     None => Ok(Amount::Drawn(law)),
                 };
             }
@@ -175,15 +175,10 @@ impl<'a> Elaborator<'a> {
                     .unwrap_or_else(|| format!("`{name}` cannot be {value}")),
             )),
             value if value.reads(&mut BTreeSet::new()) => Ok(Amount::Computed(value)),
-            _ => {
-                let error = Diagnostic::error(
-                    Code::E0304,
-                    span,
-                    "a value set by a state cannot depend on the movement of agents",
-                )
-                .hint("use constants, the agent's own parameters and processes");
-                self.report(error)
-            }
+            _ => self.report(
+                error!(E0304, span, "a value set by a state cannot depend on the movement of agents";
+                    hint: "use constants, the agent's own parameters and processes"),
+            ),
         }
     }
 
@@ -202,7 +197,7 @@ impl<'a> Elaborator<'a> {
         let known: Option<Vec<f64>> =
             out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
         if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
-            let error = Diagnostic::error(Code::E0902, span, wrong);
+            let error = error!(E0902, span, "{wrong}");
             return self.report(match self.attached_at {
                 Some(with) => error.related(with, "with these arguments"),
                 None => error,
@@ -235,9 +230,8 @@ impl Elaborator<'_> {
         }
         if !num.reads(&mut BTreeSet::new()) {
             let said = "these probabilities cannot depend on the movement of agents";
-            let error = Diagnostic::error(Code::E0304, weight.span, said)
-                .hint("use `when` conditions, or several states");
-            return self.report(error);
+            return self.report(error!(E0304, weight.span, "{said}";
+                hint: "use `when` conditions, or several states"));
         }
         Ok(num)
     }

@@ -106,9 +106,8 @@ impl<'a> Elaborator<'a> {
                 }
             };
             if let Some(first) = seen.insert(&name.name, name) {
-                let error =
-                    Diagnostic::error(Code::E0202, name.span, format!("`{}` is declared twice", name.name))
-                        .related(first.span, "first declared here");
+                let error = error!(E0202, name.span, "`{}` is declared twice", name.name)
+                    .related(first.span, "first declared here");
                 self.note(error);
             }
         }
@@ -120,17 +119,12 @@ impl<'a> Elaborator<'a> {
             let name = field.name.name.as_str();
             let first = *set.entry(name).or_insert(field);
             if !std::ptr::eq(first, field) {
-                let error = Diagnostic::error(Code::E0202, field.name.span, format!("`{name}` is set twice"))
+                let error = error!(E0202, field.name.span, "`{name}` is set twice")
                     .related(first.name.span, "first set here");
                 self.note(error);
             } else if Parameter::named(name).is_some_and(|known| !known.description().changeable) {
-                let error = Diagnostic::error(
-                    Code::E0911,
-                    field.name.span,
-                    format!("`{name}` belongs to the body and cannot change"),
-                )
-                .hint(format!("a state can set {} and route", all_parameters().join(", ")));
-                self.note(error);
+                self.note(error!(E0911, field.name.span, "`{name}` belongs to the body and cannot change";
+                    hint: "a state can set {} and route", all_parameters().join(", ")));
             } else if name != "route" && Parameter::changeable_of(name).is_none() {
                 let known = all_parameters().into_iter().chain(["route"]);
                 let error = unknown("parameter", name, field.name.span, Code::E0207, known);
@@ -166,9 +160,8 @@ impl<'a> Elaborator<'a> {
                 ExprKind::Name(called) => (called, &[]),
                 ExprKind::Call { function, arguments } => (&function.name, arguments),
                 _ => {
-                    let error = Diagnostic::error(Code::E0305, expr.span, "expected a behaviour")
-                        .hint("for example `with phone, heedful(0.8)`");
-                    self.note(error);
+                    self.note(error!(E0305, expr.span, "expected a behaviour";
+                        hint: "for example `with phone, heedful(0.8)`"));
                     strays = true;
                     continue;
                 }
@@ -178,7 +171,7 @@ impl<'a> Elaborator<'a> {
                 Some((_, other)) => {
                     if !matches!(other, Meaning::Doubtful) {
                         let text = format!("expected a behaviour, but `{called}` is {}", other.noun());
-                        self.note(Diagnostic::error(Code::E0206, expr.span, text));
+                        self.note(error!(E0206, expr.span, "{text}"));
                     }
                     self.stray.push(arguments);
                     strays = true;
@@ -195,12 +188,8 @@ impl<'a> Elaborator<'a> {
                 }
             };
             if let Some((.., first)) = behaviours.iter().find(|(known, ..)| *known == id) {
-                let error = Diagnostic::error(
-                    Code::E0912,
-                    expr.span,
-                    format!("`{}` already has the behaviour `{called}`", name.name),
-                )
-                .related(first.span, "first attached here");
+                let error = error!(E0912, expr.span, "`{}` already has the behaviour `{called}`", name.name)
+                    .related(first.span, "first attached here");
                 self.note(error);
                 self.stray.push(arguments);
                 continue;
@@ -260,7 +249,7 @@ impl<'a> Elaborator<'a> {
                     Err(Reported) if self.failed() || !self.torn.is_empty() => {}
                     Err(Reported) => {
                         let text = "internal error: this behaviour was rejected without a diagnostic";
-                        self.note(Diagnostic::error(Code::E0305, written.span, text));
+                        self.note(error!(E0305, written.span, "{text}"));
                     }
                 }
             }

@@ -9,7 +9,6 @@ use crate::model::{BehaviourId, Bool, BuiltIn, Comparison, Field, Num, Who};
 use crate::syntax::ast::process::BehaviourDecl;
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl<'a> Elaborator<'a> {
@@ -47,7 +46,7 @@ impl<'a> Elaborator<'a> {
         let (decl, inner, path) = self.inside_behaviour(name, locals)?;
         if !decl.arguments.is_empty() {
             let text = format!("`{name}` is a function of {}", counted_arguments(decl.arguments.len()));
-            let error = Diagnostic::error(Code::E0204, span, text).hint(format!("call it: `{name}(…)`"));
+            let error = error!(E0204, span, "{text}"; hint: "call it: `{name}(…)`");
             return Some(self.report(error));
         }
         Some(self.expand(0, &path, span, |this| this.lower(&decl.body, &inner)))
@@ -93,9 +92,8 @@ impl<'a> Elaborator<'a> {
                 return Err(Reported);
             }
             let text = format!("`{}` has no behaviour `{}`", self.text(base), member.name);
-            let error = Diagnostic::error(Code::E0201, member.span, text)
-                .hint(format!("attach it: `agent … : … with {}`", member.name));
-            return self.report(error);
+            return self.report(error!(E0201, member.span, "{text}";
+                hint: "attach it: `agent … : … with {}`", member.name));
         }
         Ok(Typed::Mode { behaviour, who })
     }
@@ -134,9 +132,8 @@ impl<'a> Elaborator<'a> {
         let (behaviour, states) = (&decl.name.name, states(decl).map(|state| state.name.name.as_str()));
         let names: Vec<&str> = states.collect();
         let ExprKind::Name(wanted) = &named.kind else {
-            let error = Diagnostic::error(Code::E0305, named.span, "expected the name of a state")
-                .hint(format!("the states of `{behaviour}` are {}", names.join(", ")));
-            return self.report(error);
+            return self.report(error!(E0305, named.span, "expected the name of a state";
+                hint: "the states of `{behaviour}` are {}", names.join(", ")));
         };
         if let Some(at) = names.iter().position(|name| name == wanted) {
             return Ok(at);

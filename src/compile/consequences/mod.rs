@@ -305,7 +305,7 @@ mod tests {
         let found = names.iter().map(|name| {
             let span = Span::new(SourceId(0), at, at + name.len());
             at += name.len() + 3;
-            Diagnostic::error(Code::E0201, span, format!("unknown name `{name}`"))
+            error!(E0201, span, "unknown name `{name}`")
         });
         let told = once_a_name(less_what_follows(found.collect(), &sources), &sources);
         assert_eq!(told.len(), 15_000);

@@ -33,25 +33,21 @@ impl Elaborator<'_> {
         };
         let error = match fault {
             Fault::Degrees => {
-                let error = Diagnostic::error(
-                    Code::E0712,
-                    span,
-                    "the coordinates are degrees, or all of the file lies within 5 cm",
-                );
+                let error =
+                    error!(E0712, span, "the coordinates are degrees, or all of the file lies within 5 cm");
                 let local = self.rewritten(import, "projection", "local");
                 error.hint(format!("write `{local}` for degrees, or set `unit`"))
             }
             Fault::NoDegrees(p) => {
                 let text = format!("({}, {}) is not a longitude and a latitude in degrees", p.x, p.y);
-                Diagnostic::error(Code::E0712, span, text)
-                    .hint("leave out `projection` for coordinates in metres")
+                error!(E0712, span, "{text}"; hint: "leave out `projection` for coordinates in metres")
             }
             Fault::Swapped => {
                 let has_origin = import.fields.iter().any(|field| field.name.name == "origin");
                 let or_origin = if has_origin { " or in `origin`" } else { "" };
                 let text = format!("latitude and longitude are swapped in the file{or_origin}");
-                Diagnostic::error(Code::E0712, span, text)
-                    .hint("write the longitude first, as GeoJSON, WKT and `origin` have it: `(11.57, 48.15)`")
+                error!(E0712, span, "{text}";
+                    hint: "write the longitude first, as GeoJSON, WKT and `origin` have it: `(11.57, 48.15)`")
             }
             Fault::Extent { size, fits } => {
                 let text = if size < 1.0 {
@@ -59,17 +55,16 @@ impl Elaborator<'_> {
                 } else {
                     format!("the drawing is {:.0} km wide", size / 1e3)
                 };
-                Diagnostic::error(Code::E0711, span, text).hint(unit_hint(self, fits))
+                error!(E0711, span, "{text}").hint(unit_hint(self, fits))
             }
             Fault::Door { width, fits } => {
                 let text = format!("the narrowest door is {width:.0} m wide");
-                Diagnostic::error(Code::E0711, span, text).hint(unit_hint(self, fits))
+                error!(E0711, span, "{text}").hint(unit_hint(self, fits))
             }
             Fault::Far(origin) => {
                 let text = "the drawing is more than 100 km from the origin of its coordinates";
                 let origin = self.rewritten(import, "origin", &format!("({}, {})", origin.x, origin.y));
-                Diagnostic::error(Code::E0710, span, text)
-                    .hint(format!("move it to the origin of the scene: `{origin}`"))
+                error!(E0710, span, "{text}"; hint: "move it to the origin of the scene: `{origin}`")
             }
         };
         self.report(error)
@@ -91,8 +86,7 @@ impl Elaborator<'_> {
         };
         let written = self.text(*whole).replacen(self.text(*at).as_str(), &alike.to_string(), 1);
         let text = format!("`{name}` is {} in this file, not {}", kind(&alike), kind(value));
-        Diagnostic::error(Code::E0305, *at, text)
-            .hint(format!("write `{written}`; the values of `{name}` are {}", listed(seen)))
+        error!(E0305, *at, "{text}"; hint: "write `{written}`; the values of `{name}` are {}", listed(seen))
     }
 
     /// The drawing in a file. Filters come first: what is wrong with features that are not selected does not matter.
@@ -140,7 +134,7 @@ impl Elaborator<'_> {
         let formats = |error: Diagnostic| if is_other { error.hint(FORMATS) } else { error };
         let text = match text {
             Ok(text) => text,
-            Err(fault) => return self.report(formats(Diagnostic::error(Code::E0704, span, fault))),
+            Err(fault) => return self.report(formats(error!(E0704, span, "{fault}"))),
         };
         let read = geometry::read(format, &text, unit, &mut select);
         if let Some(error) = wrong {
@@ -215,7 +209,7 @@ fn text_of(bytes: &[u8], format: Format) -> Result<Cow<'_, str>, &'static str> {
 /// Errors of a geometry.
 pub(super) fn unreadable(span: Span, errors: &[GeometryError]) -> Diagnostic {
     let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-    Diagnostic::error(Code::E0704, span, "the geometry in the file cannot be read").label(shown(&errors))
+    error!(E0704, span, "the geometry in the file cannot be read").label(shown(&errors))
 }
 
 /// The first of some sentences.

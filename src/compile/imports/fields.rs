@@ -9,7 +9,6 @@ use crate::compile::typed::Typed;
 use crate::data::geometry::Format;
 use crate::syntax::ast::{Expr, ExprKind, Field, Text, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 /// Within at most so many metres walls are joined.
 const WIDEST_SNAP: f64 = 1.0;
@@ -57,7 +56,7 @@ impl Elaborator<'_> {
                 } else {
                     continue;
                 };
-                found = self.report(Diagnostic::error(Code::E0712, field.name.span, text));
+                found = self.report(error!(E0712, field.name.span, "{text}"));
             }
         }
         found
@@ -70,25 +69,23 @@ impl Elaborator<'_> {
         }
         if fields[..k].iter().any(|before| before.name.name == name.name) {
             let text = format!("`{}` is set twice", name.name);
-            return self.report(Diagnostic::error(Code::E0202, name.span, text));
+            return self.report(error!(E0202, name.span, "{text}"));
         }
         let expr = match (&fields[k].value, name.name.as_str()) {
             (Value::Plain(expr), _) => expr,
             (_, "snap" | "unit") => {
-                return self.report(Diagnostic::error(Code::E0305, at, "expected a length such as `5 cm`"));
+                return self.report(error!(E0305, at, "expected a length such as `5 cm`"));
             }
             (_, "origin") => {
-                return self.report(Diagnostic::error(Code::E0305, at, "expected a point such as `(1, 2)`"));
+                return self.report(error!(E0305, at, "expected a point such as `(1, 2)`"));
             }
-            _ => return self.report(Diagnostic::error(Code::E0305, at, "expected `local`")),
+            _ => return self.report(error!(E0305, at, "expected `local`")),
         };
         match name.name.as_str() {
             "projection" => match &expr.kind {
                 ExprKind::Name(name) if name == "local" => Ok(Fields { is_local: true, ..Fields::default() }),
-                _ => {
-                    let error = Diagnostic::error(Code::E0305, at, "the only `projection` is `local`");
-                    self.report(error.hint("write `projection = local` for coordinates in degrees"))
-                }
+                _ => self.report(error!(E0305, at, "the only `projection` is `local`";
+                        hint: "write `projection = local` for coordinates in degrees")),
             },
             "origin" => match self.lower(expr, &Locals::default())? {
                 Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {
@@ -102,7 +99,7 @@ impl Elaborator<'_> {
                 let (is_snap, most) = (setting == "snap", if setting == "snap" { WIDEST_SNAP } else { 1e4 });
                 if !(0.0 < value && value <= most) {
                     let text = format!("`{setting}` must be positive and at most {most} m (got {value} m)");
-                    return self.report(Diagnostic::error(Code::E0405, at, text));
+                    return self.report(error!(E0405, at, "{text}"));
                 }
                 Ok(Fields {
                     snap: is_snap.then_some(value),

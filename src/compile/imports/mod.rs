@@ -89,8 +89,7 @@ impl Elaborator<'_> {
             let is_stated = format == Format::Dxf || fields.unit.is_some() || fields.origin.is_some();
             let unit = match drawing.unit.or(fields.unit) {
                 None if format == Format::Dxf => {
-                    let error =
-                        Diagnostic::error(Code::E0711, span, "the drawing does not state its unit of length");
+                    let error = error!(E0711, span, "the drawing does not state its unit of length");
                     let written = self.rewritten(import, "unit", "1 mm");
                     return self.report(error.hint(format!("write the unit, for example `{written}`")));
                 }
@@ -206,7 +205,7 @@ impl Elaborator<'_> {
     pub(super) fn crowded(&mut self, span: Span) {
         let text = "too many walls meet or nearly meet each other: more than 2 million pairs";
         let hint = "leave out hatches and other fills, and lines that meet in one point by the thousand";
-        self.note(Diagnostic::error(Code::E0923, span, text).hint(hint));
+        self.note(error!(E0923, span, "{text}"; hint: "{hint}"));
     }
 
     /// The hint for a point inside an imported polygon that may be where agents move.

@@ -9,8 +9,6 @@ use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Function, Num};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
@@ -101,9 +99,7 @@ impl Elaborator<'_> {
         };
         match joined {
             Some(dimension) => Ok(dimension),
-            None => {
-                self.report(Diagnostic::error(Code::E0302, span, "the unit of the result is out of range"))
-            }
+            None => self.report(error!(E0302, span, "the unit of the result is out of range")),
         }
     }
 
@@ -111,7 +107,7 @@ impl Elaborator<'_> {
     fn fold(&mut self, span: Span, op: BinaryOp, a: Number, (b, right): (Number, Span)) -> Lowered<Number> {
         self.joined(span, op, a.dimension, b.dimension, right)?;
         if op == BinaryOp::Over && b.value == 0.0 {
-            return self.report(Diagnostic::error(Code::E0405, right, "division by zero"));
+            return self.report(error!(E0405, right, "division by zero"));
         }
         let value = match op {
             BinaryOp::Plus => Some(a.plus(b)),
@@ -119,10 +115,7 @@ impl Elaborator<'_> {
             BinaryOp::Times => a.times(b),
             _ => a.over(b),
         };
-        value.map_or_else(
-            || self.report(Diagnostic::error(Code::E0302, span, "the unit of the result is out of range")),
-            Ok,
-        )
+        value.map_or_else(|| self.report(error!(E0302, span, "the unit of the result is out of range")), Ok)
     }
 
     /// Both coordinates of a point that is known now.
@@ -136,7 +129,7 @@ impl Elaborator<'_> {
         let x = self.fold(span, op, ax, (bx, right))?;
         let y = self.fold(span, op, ay, (by, right))?;
         if !(x.value.is_finite() && y.value.is_finite()) {
-            return self.report(Diagnostic::error(Code::E0405, span, "the point is not finite"));
+            return self.report(error!(E0405, span, "the point is not finite"));
         }
         Ok(Typed::Point(x, y))
     }
@@ -172,15 +165,10 @@ impl Elaborator<'_> {
                 Ok(Typed::Vector(combine(op, &x, &factor), combine(op, &y, &factor), dimension))
             }
             BinaryOp::Times if !is_vector(&a.0) => self.lower_vector(op, b, a),
-            _ => {
-                let error = Diagnostic::error(
-                    Code::E0305,
-                    a.1.to(b.1),
-                    "vectors can only be added, subtracted, and multiplied by numbers",
-                )
-                .hint("for the length of a vector write `distance(a, b)` or `speed(a)`");
-                self.report(error)
-            }
+            _ => self.report(
+                error!(E0305, a.1.to(b.1), "vectors can only be added, subtracted, and multiplied by numbers";
+                    hint: "for the length of a vector write `distance(a, b)` or `speed(a)`"),
+            ),
         }
     }
 
@@ -191,7 +179,7 @@ impl Elaborator<'_> {
                 let (base, dimension) = self.as_num(base, left.span)?;
                 if !dimension.is_none() {
                     let said = format!("{} can only be raised to a fixed whole power", describe(dimension));
-                    return self.report(Diagnostic::error(Code::E0303, right.span, said));
+                    return self.report(error!(E0303, right.span, "{said}"));
                 }
                 let power = Num::Combine(Arithmetic::Power, Box::new(base), Box::new(exponent));
                 return Ok(Typed::Num(power, dimension));
@@ -208,16 +196,13 @@ impl Elaborator<'_> {
             match whole {
                 Some(n) => match dimension.power(n) {
                     Some(d) => Ok(d),
-                    None => this.report(Diagnostic::error(
-                        Code::E0302,
-                        span,
-                        "the unit of the result is out of range",
-                    )),
+                    None => this.report(error!(E0302, span, "the unit of the result is out of range")),
                 },
-                None => this.report(Diagnostic::error(
-                    Code::E0303,
+                None => this.report(error!(
+                    E0303,
                     right.span,
-                    format!("{} can only be raised to a whole power", describe(dimension)),
+                    "{} can only be raised to a whole power",
+                    describe(dimension)
                 )),
             }
         };
@@ -225,10 +210,8 @@ impl Elaborator<'_> {
             Typed::Number(base) => {
                 let dimension = power(self, base.dimension)?;
                 if base.value == 0.0 && exponent.value < 0.0 {
-                    return self.report(
-                        Diagnostic::error(Code::E0405, left.span, "division by zero")
-                            .hint("a negative power of zero is undefined"),
-                    );
+                    return self.report(error!(E0405, left.span, "division by zero";
+                            hint: "a negative power of zero is undefined"));
                 }
                 if let Some(n) = whole {
                     let one = Some(Number::whole(1));
@@ -240,11 +223,7 @@ impl Elaborator<'_> {
                 }
                 let value = math::pow(base.value, exponent.value);
                 if !value.is_finite() {
-                    return self.report(Diagnostic::error(
-                        Code::E0405,
-                        span,
-                        "the value is not a finite number",
-                    ));
+                    return self.report(error!(E0405, span, "the value is not a finite number"));
                 }
                 Ok(Typed::Number(Number::rounded(value, dimension)))
             }

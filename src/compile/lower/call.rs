@@ -13,7 +13,6 @@ use crate::model::function::{Rule, Signature, Special};
 use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::foreign_word;
 use crate::syntax::source::Span;
 
@@ -50,13 +49,8 @@ impl Elaborator<'_> {
             return self.built_in(built_in, (expr, function), arguments, locals);
         }
         if DISTRIBUTIONS.contains(&function.name.as_str()) {
-            let error = Diagnostic::error(
-                Code::E0404,
-                expr.span,
-                format!("the distribution `{}` cannot be part of an expression", function.name),
-            )
-            .hint("use it as the value of a field or of `after`; it may have a factor: `poisson(4) * (1 s / 3)`");
-            return self.report(error);
+            return self.report(error!(E0404, expr.span, "the distribution `{}` cannot be part of an expression", function.name;
+                hint: "use it as the value of a field or of `after`; it may have a factor: `poisson(4) * (1 s / 3)`"));
         }
         self.unknown_function(function, expr.span, arguments, locals)
     }
@@ -83,7 +77,7 @@ impl Elaborator<'_> {
             // may be just that it lacks its arguments.
             if !hidden && self.lower_name(name, function.span, locals).is_ok() {
                 let text = format!("`{name}` is {} and has no arguments", meaning.noun());
-                self.note(Diagnostic::error(Code::E0204, span, text));
+                self.note(error!(E0204, span, "{text}"));
             }
             return self.lower_all(arguments, locals).and(Err(Reported));
         }
@@ -131,13 +125,8 @@ impl Elaborator<'_> {
                 return self.flow(built_in, [line, window], locals);
             }
             Signature::Special(Special::Robustness) => {
-                let error = Diagnostic::error(
-                    Code::E0504,
-                    expr.span,
-                    "`robustness` is allowed only directly inside `E(…)`, `Q(…)` and `P(…)`",
-                )
-                .hint("write `E(robustness(safe)) in -1 m .. 1 m` or `P(robustness(safe) >= 0.2 m)`");
-                return self.report(error);
+                return self.report(error!(E0504, expr.span, "`robustness` is allowed only directly inside `E(…)`, `Q(…)` and `P(…)`";
+                    hint: "write `E(robustness(safe)) in -1 m .. 1 m` or `P(robustness(safe) >= 0.2 m)`"));
             }
             _ if !built_in.takes(arguments.len()) => {
                 let wanted = counted_arguments(built_in.arguments.0);
@@ -180,13 +169,8 @@ impl Elaborator<'_> {
             return self.inside_a_formula(|this| this.arity(function, expr.span, "1 argument", given));
         };
         if !self.temporal || locals.running > 0 {
-            let error = Diagnostic::error(
-                Code::E0504,
-                expr.span,
-                "`time_until` is about a trace, but a value of one state is needed here",
-            )
-            .hint("write it in a metric or a comparison of a property file, outside of folds over agents");
-            return self.report(error);
+            return self.report(error!(E0504, expr.span, "`time_until` is about a trace, but a value of one state is needed here";
+                hint: "write it in a metric or a comparison of a property file, outside of folds over agents"));
         }
         let typed = self.inside_a_formula(|this| this.lower(formula, locals));
         let node = self.as_formula(typed?, formula.span)?;
@@ -297,13 +281,8 @@ impl Elaborator<'_> {
             ) => Typed::Num(self.of_region(special, typed, span, locals)?, built_in.gives()),
             _ => {
                 let name = built_in.name;
-                let error = Diagnostic::error(
-                    Code::E0305,
-                    function.span,
-                    format!("`{name}` needs a set or a time window"),
-                )
-                .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
-                return self.report(error);
+                return self.report(error!(E0305, function.span, "`{name}` needs a set or a time window";
+                    hint: "write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
             }
         })
     }
@@ -339,12 +318,8 @@ impl Elaborator<'_> {
             Rule::Root => match given.root() {
                 Some(root) => root,
                 None => {
-                    let error = Diagnostic::error(
-                        Code::E0303,
-                        argument.span,
-                        format!("the square root of `{given}` has no unit"),
-                    );
-                    return self.report(error);
+                    return self
+                        .report(error!(E0303, argument.span, "the square root of `{given}` has no unit"));
                 }
             },
             _ => given,
@@ -359,7 +334,7 @@ impl Elaborator<'_> {
     fn computed(&mut self, value: f64, dimension: Dimension, function: &str, span: Span) -> Lowered<Typed> {
         if !value.is_finite() {
             let text = format!("`{function}` of this value is not finite");
-            return self.report(Diagnostic::error(Code::E0405, span, text));
+            return self.report(error!(E0405, span, "{text}"));
         }
         let whole = value.fract() == 0.0 && value.abs() < 9e15;
         let exact = whole.then(|| crate::base::decimal::Decimal::whole(value as i64));
@@ -382,7 +357,7 @@ impl Elaborator<'_> {
         let dimension = if let Rule::Always(dimension) = built_in.dimension { dimension } else { da };
         if let (true, Num::Constant(a), Num::Constant(b)) = (known, &a, &b) {
             if operator == Arithmetic::Modulo && *b == 0.0 {
-                return self.report(Diagnostic::error(Code::E0405, right, "division by zero"));
+                return self.report(error!(E0405, right, "division by zero"));
             }
             return self.computed(operator.of(*a, *b), dimension, built_in.name, span);
         }
@@ -403,7 +378,7 @@ impl Elaborator<'_> {
         let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
         if extended(&a) && extended(&b) {
             let said = "one side of a distance must be an agent or a point";
-            return self.report(Diagnostic::error(Code::E0305, span, said));
+            return self.report(error!(E0305, span, "{said}"));
         }
         Ok(Typed::Num(Num::Distance(a, b), Dimension::LENGTH))
     }

@@ -8,8 +8,6 @@ use crate::logic::{Aggregation, Term, Window};
 use crate::model::function::LegMeasure;
 use crate::model::{Bool, BuiltIn, Comparison, Field, Num, Who};
 use crate::syntax::ast::Expr;
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 /// From the first state to the last one.
 const WHOLE: Window = Window { from: Tick(0), to: None };
@@ -32,17 +30,14 @@ impl Elaborator<'_> {
         let name = built_in.name;
         if !self.temporal || locals.running > 0 {
             let said = format!("`{name}` is about a trace, but a value of one state is needed here");
-            let error = Diagnostic::error(Code::E0504, expr.span, said);
-            return self.report(error.hint(
-                "write it in a metric or a comparison of a property file, outside of folds over agents",
-            ));
+            return self.report(error!(E0504, expr.span, "{said}";
+                hint: "write it in a metric or a comparison of a property file, outside of folds over agents"));
         }
         let [agent, number] = arguments;
         let sides = (self.lower(agent, locals), self.number_of(number, Dimension::NONE, locals));
         let (who, given) = (self.as_agent(sides.0?, agent.span)?, sides.1?);
         let Who::Agent(id) = who else {
-            let error =
-                Diagnostic::error(Code::E0305, agent.span, "expected an agent that is known before a trial");
+            let error = error!(E0305, agent.span, "expected an agent that is known before a trial");
             return self.report(error.hint("choose a member such as `crowd[1]`"));
         };
         let most = self.legs.get(id.0 as usize).copied().filter(|_| !self.undeclared.contains(&id));
@@ -55,8 +50,8 @@ impl Elaborator<'_> {
                 1 => format!("the route of `{whose}` has one leg"),
                 _ => format!("the route of `{whose}` has {most} legs"),
             };
-            let error = Diagnostic::error(Code::E0405, number.span, format!("{legs} (got {})", given.value));
-            return self.report(error.hint("legs are numbered from 1; pauses are no legs"));
+            return self.report(error!(E0405, number.span, "{legs} (got {})", given.value;
+                hint: "legs are numbered from 1; pauses are no legs"));
         };
         let num = Num::Of(Field::Leg(measure, leg - 1), who);
         let signal = self.signal(num, built_in.gives(), expr.span);

@@ -159,11 +159,8 @@ impl Elaborator<'_> {
         }
         match (&a, &b) {
             (Typed::Agent(_), Typed::Agent(_)) => {
-                let error = Diagnostic::error(
-                    Code::E0305,
-                    whole,
-                    format!("`{}` compares two agents, not two numbers", self.text(whole)),
-                );
+                let error =
+                    error!(E0305, whole, "`{}` compares two agents, not two numbers", self.text(whole));
                 let other = self.text(right.span);
                 return self.report(error.hint(format!(
                     "the set of all agents except `{other}` is `others({other})`: write `forall a in others({other}): …`"
@@ -207,9 +204,8 @@ impl Elaborator<'_> {
             return Ok(Typed::Formula(self.comparison((relation, a, b), text, da)));
         }
         if [&a, &b].iter().all(|side| matches!(side, Typed::Vector(..) | Typed::Point(..))) {
-            let error = Diagnostic::error(Code::E0305, whole, "vectors cannot be compared")
-                .hint("compare their `distance` or their components: `x(position(a))`");
-            return self.report(error);
+            return self.report(error!(E0305, whole, "vectors cannot be compared";
+                hint: "compare their `distance` or their components: `x(position(a))`"));
         }
         let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
         let ((a, da), (b, db)) = (sides.0?, sides.1?);
@@ -280,14 +276,8 @@ impl Elaborator<'_> {
             return Ok(());
         }
         let unit = if self.clock == Clock::Steps { "steps" } else { "s" };
-        let error = Diagnostic::error(
-            Code::E0502,
-            span,
-            format!("the formula needs {limit} {unit}, but the horizon is {}", self.duration(self.horizon.0)),
-        );
-        self.report(error.hint(format!(
-            "set `horizon = {limit} {unit}` in the scenario, or compare with a smaller number"
-        )))
+        self.report(error!(E0502, span, "the formula needs {limit} {unit}, but the horizon is {}", self.duration(self.horizon.0);
+            hint: "set `horizon = {limit} {unit}` in the scenario, or compare with a smaller number"))
     }
 
     /// Something is wrong with one of two sides that ought to have one dimension. That they have not is told as well, as

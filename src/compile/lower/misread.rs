@@ -9,7 +9,6 @@ use crate::base::tick::Clock;
 use crate::model::BuiltIn;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::{foreign_word, time_meant, unit_meant};
 use crate::syntax::source::Span;
 
@@ -35,7 +34,7 @@ impl Elaborator<'_> {
             }
             _ => format!("did you mean `{number} {unit}`?"),
         };
-        self.note(Diagnostic::error(Code::E0113, span, format!("unknown unit `{name}`")).hint(hint));
+        self.note(error!(E0113, span, "unknown unit `{name}`"; hint: "{hint}"));
         true
     }
 
@@ -66,7 +65,7 @@ impl Elaborator<'_> {
         {
             let title = format!("`{}` is allowed only in queries, not in formulas", function.name);
             let query = self.text(left.span.to(right.span));
-            let error = Diagnostic::error(Code::E0504, function.span, title);
+            let error = error!(E0504, function.span, "{title}");
             return Some(self.report(error.hint(format!("write a separate query: `check {query}`"))));
         }
         let (span, inner, moment) = [left, right].into_iter().find_map(|side| match &side.kind {
@@ -98,7 +97,7 @@ impl Elaborator<'_> {
         let at = behind.find("at").unwrap_or(0);
         let start = inner.end + at as u32;
         let end = start + behind[at..].trim_end_matches([')', ' ']).len() as u32;
-        let error = Diagnostic::error(Code::E0504, Span { start, end, ..span }, title);
+        let error = error!(E0504, Span { start, end, ..span }, "{title}");
         self.report(match read {
             Some(read) => error.hint(format!("for a condition write `F[{time}, {time}] ({read})`")),
             None => error.hint(format!("write it last: `E(… {written})`")),
@@ -130,8 +129,7 @@ impl Elaborator<'_> {
         if nearest(name, std::iter::once(PLACES)).is_none() || self.is_known(name, &locals) {
             return false;
         }
-        let error = Diagnostic::error(Code::E0201, word.span, format!("unknown name `{name}`"));
-        self.note(error.hint(format!("did you mean `{PLACES}`?")));
+        self.note(error!(E0201, word.span, "unknown name `{name}`"; hint: "did you mean `{PLACES}`?"));
         match (&shape.kind, value) {
             (ExprKind::Call { arguments, .. }, Value::Truncated { high, .. }) => {
                 let _ = self.lower_all(arguments.iter().chain([high]), &locals);
@@ -164,8 +162,7 @@ impl Elaborator<'_> {
             return false;
         }
         for (name, span, unit, _) in misspelt {
-            let error = Diagnostic::error(Code::E0113, span, format!("unknown unit `{name}`"));
-            self.note(error.hint(format!("did you mean `{unit}`?")));
+            self.note(error!(E0113, span, "unknown unit `{name}`"; hint: "did you mean `{unit}`?"));
         }
         true
     }

@@ -27,8 +27,6 @@ use super::weight::Weight;
 use crate::logic::{Node, NodeId, TermId};
 use crate::model::{Axis, Bool, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
@@ -166,10 +164,9 @@ impl Elaborator<'_> {
                 (Some(unit), true) => {
                     Ok(number.times(Number::literal(crate::base::decimal::Decimal::ONE, &unit)))
                 }
-                (Some(_), false) => this.report(
-                    Diagnostic::error(Code::E0303, span, "both the coordinate and the point have a unit")
-                        .hint("write the unit once, after the parenthesis or in each coordinate"),
-                ),
+                (Some(_), false) => this
+                    .report(error!(E0303, span, "both the coordinate and the point have a unit";
+                        hint: "write the unit once, after the parenthesis or in each coordinate")),
                 // A point without a unit is in metres.
                 (None, true) => Ok(metre
                     .map(|m| Number::literal(crate::base::decimal::Decimal::ONE, &m))
@@ -205,23 +202,14 @@ impl Elaborator<'_> {
         match typed {
             Typed::Number(number) => Ok((Num::Constant(number.value), number.dimension)),
             Typed::Num(num, dimension) => Ok((num, dimension)),
-            Typed::Tally(_) => {
-                let error = Diagnostic::error(
-                    Code::E0504,
-                    span,
-                    "a count of temporal formulas can only be compared with a number",
-                )
-                .hint("write for example `count(a in crowd: F<=5 s (a in exit)) >= 3`");
-                self.report(error)
-            }
-            Typed::Term(..) => {
-                let error = Diagnostic::error(
-                    Code::E0504,
-                    span,
-                    "a value of one state is needed here, not an aggregate over time",
-                );
-                self.report(error)
-            }
+            Typed::Tally(_) => self.report(
+                error!(E0504, span, "a count of temporal formulas can only be compared with a number";
+                    hint: "write for example `count(a in crowd: F<=5 s (a in exit)) >= 3`"),
+            ),
+            Typed::Term(..) => self.report(error!(
+                E0504,
+                span, "a value of one state is needed here, not an aggregate over time"
+            )),
             found => self.mismatch(span, "a number", &found),
         }
     }
@@ -285,12 +273,10 @@ impl Elaborator<'_> {
                 if let Some(truth) = written {
                     return Ok(truth);
                 }
-                let error = Diagnostic::error(
-                    Code::E0504,
-                    span,
-                    "a condition of one state is needed here, not a temporal formula",
-                );
-                self.report(error)
+                self.report(error!(
+                    E0504,
+                    span, "a condition of one state is needed here, not a temporal formula"
+                ))
             }
             found => self.mismatch(span, "a condition", &found),
         }
@@ -301,15 +287,9 @@ impl Elaborator<'_> {
         match typed {
             Typed::Agent(who) => Ok(who),
             Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Who::Agent(set.members[0])),
-            found @ Typed::Agents { .. } => {
-                let error = Diagnostic::error(
-                    Code::E0305,
-                    span,
-                    format!("expected an agent, found {}", found.noun()),
-                )
-                .hint("choose a member such as `crowd[1]`, or quantify: `forall a in crowd: …`");
-                self.report(error)
-            }
+            found @ Typed::Agents { .. } => self
+                .report(error!(E0305, span, "expected an agent, found {}", found.noun();
+                    hint: "choose a member such as `crowd[1]`, or quantify: `forall a in crowd: …`")),
             found => self.mismatch(span, "an agent", &found),
         }
     }
@@ -351,9 +331,8 @@ impl Elaborator<'_> {
                 Ok(Place::Point(Box::new(x), Box::new(y)))
             }
             found @ Typed::Agents { .. } => {
-                let error =
-                    Diagnostic::error(Code::E0305, span, format!("expected a place, found {}", found.noun()))
-                        .hint("use `centroid(…)` or a member");
+                let error = error!(E0305, span, "expected a place, found {}", found.noun();
+                        hint: "use `centroid(…)` or a member");
                 self.report(error)
             }
             found => self.mismatch(span, "a place: an agent, point, region or wall", &found),
@@ -372,12 +351,7 @@ impl Elaborator<'_> {
                 }
                 Place::Point(x, y) => Ok((*x, *y, Dimension::LENGTH)),
                 Place::Region(_) | Place::Barrier(_) => {
-                    let error = Diagnostic::error(
-                        Code::E0305,
-                        span,
-                        "a region or an obstacle has no single position",
-                    );
-                    self.report(error)
+                    self.report(error!(E0305, span, "a region or an obstacle has no single position"))
                 }
             },
         }
@@ -392,16 +366,13 @@ impl Elaborator<'_> {
         (arguments, locals): (&[Expr], &Locals),
     ) -> Lowered<T> {
         let found = arguments.len();
-        let error = Diagnostic::error(
-            Code::E0204,
+        self.note(error!(
+            E0204,
             span,
-            format!(
-                "`{}` needs {wanted}, but {found} {} given",
-                function.name,
-                if found == 1 { "is" } else { "are" }
-            ),
-        );
-        self.note(error);
+            "`{}` needs {wanted}, but {found} {} given",
+            function.name,
+            if found == 1 { "is" } else { "are" }
+        ));
         let _ = self.lower_all(arguments, locals);
         Err(Reported)
     }

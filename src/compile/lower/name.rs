@@ -11,7 +11,7 @@ use super::{BUILT_IN, counted_arguments};
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::{Diagnostic, Label};
+use crate::syntax::diagnostic::Label;
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
@@ -57,9 +57,8 @@ impl<'a> Elaborator<'a> {
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
                 "time" if self.clock.is_jumps() => {
-                    let error =
-                        Diagnostic::error(Code::E0508, span, "`time` is not available in continuous time")
-                            .hint("use a bound such as `F[4 s, 5 s]`, or `time_until(…)`");
+                    let error = error!(E0508, span, "`time` is not available in continuous time";
+                            hint: "use a bound such as `F[4 s, 5 s]`, or `time_until(…)`");
                     self.report(error)
                 }
                 "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
@@ -95,20 +94,15 @@ impl<'a> Elaborator<'a> {
             }
             Meaning::Let(decl) => {
                 if !decl.arguments.is_empty() {
-                    let error = Diagnostic::error(
-                        Code::E0204,
-                        span,
-                        format!("`{name}` is a function of {}", counted_arguments(decl.arguments.len())),
-                    )
-                    .hint(format!("call it: `{name}(…)`"));
-                    return self.report(error);
+                    return self.report(error!(E0204, span, "`{name}` is a function of {}", counted_arguments(decl.arguments.len());
+                        hint: "call it: `{name}(…)`"));
                 }
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
                 self.expand_once(scope, name, span, |this| this.lower(&decl.body, &inner))
             }
             Meaning::Property(_) if !self.temporal => {
                 let text = format!("a number is needed here, but `{name}` is a property");
-                self.report(Diagnostic::error(Code::E0305, span, text))
+                self.report(error!(E0305, span, "{text}"))
             }
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
@@ -134,18 +128,10 @@ impl<'a> Elaborator<'a> {
                 self.unknowns += 1;
                 Err(Reported)
             }
-            Meaning::Declared => {
-                let error = Diagnostic::error(Code::E0205, span, format!("`{name}` is not available here"))
-                    .hint("numbers of agents and parameters cannot depend on agents");
-                self.report(error)
-            }
+            Meaning::Declared => self.report(error!(E0205, span, "`{name}` is not available here";
+                    hint: "numbers of agents and parameters cannot depend on agents")),
             Meaning::Kind(_) | Meaning::Tracks(_) | Meaning::Behaviour(_) => {
-                let error = Diagnostic::error(
-                    Code::E0206,
-                    span,
-                    format!("`{name}` is {} and has no value", meaning.noun()),
-                );
-                self.report(error)
+                self.report(error!(E0206, span, "`{name}` is {} and has no value", meaning.noun()))
             }
         }
     }
@@ -233,8 +219,7 @@ impl<'a> Elaborator<'a> {
             Typed::Truth(..) => "a condition that changes during a trial".to_owned(),
             _ => format!("{} that changes during a trial", found.noun()),
         };
-        let error =
-            Diagnostic::error(Code::E0304, value.span, "the value must be known before a trial starts");
+        let error = error!(E0304, value.span, "the value must be known before a trial starts");
         self.report(error.label(label).hint(if is_drawn {
             "name a value that is drawn in each trial with `let`"
         } else {
@@ -266,8 +251,7 @@ impl<'a> Elaborator<'a> {
                 .chain([name])
                 .collect();
             self.circles.extend(way.iter().map(|n| (*n).to_owned()));
-            let error = Diagnostic::error(Code::E0205, span, format!("`{name}` depends on itself"))
-                .label(way.join(" → "));
+            let error = error!(E0205, span, "`{name}` depends on itself").label(way.join(" → "));
             return self.report(error);
         }
         self.expanding.push((scope, name.to_owned()));
@@ -386,7 +370,7 @@ impl<'a> Elaborator<'a> {
         for (k, argument) in arguments.iter().enumerate() {
             if let Some(first) = arguments[..k].iter().find(|first| first.name == argument.name) {
                 let text = format!("the argument `{}` is declared twice", argument.name);
-                let error = Diagnostic::error(Code::E0202, argument.span, text);
+                let error = error!(E0202, argument.span, "{text}");
                 self.note(error.related(first.span, "first declared here").hint("rename one of them"));
             }
         }
@@ -425,13 +409,10 @@ impl<'a> Elaborator<'a> {
             Typed::Agents { set, particle: false } => set,
             Typed::Processes(process) => return self.lower_copy(process, base, index, locals),
             Typed::Agents { particle: true, .. } => {
-                let error = Diagnostic::error(
-                    Code::E0206,
-                    base.span,
-                    "a group `as particle` is one body and has no members",
-                )
-                .hint("remove `as particle` to simulate the members");
-                return self.report(error);
+                return self.report(
+                    error!(E0206, base.span, "a group `as particle` is one body and has no members";
+                    hint: "remove `as particle` to simulate the members"),
+                );
             }
             found => return self.mismatch(base.span, "a set of agents", &found),
         };
@@ -446,13 +427,8 @@ impl<'a> Elaborator<'a> {
             None => None,
             Some(Who::Agent(id)) => Some(id),
             Some(Who::Running(_)) => {
-                let error = Diagnostic::error(
-                    Code::E0304,
-                    base.span,
-                    "the members of this set differ for each value of the quantifier",
-                )
-                .hint("choose a member of a fixed set such as `crowd[1]`, or quantify over this set");
-                return self.report(error);
+                return self.report(error!(E0304, base.span, "the members of this set differ for each value of the quantifier";
+                    hint: "choose a member of a fixed set such as `crowd[1]`, or quantify over this set"));
             }
         };
         let members: Vec<_> = set.members.iter().filter(|id| Some(**id) != left_out).copied().collect();
@@ -478,19 +454,16 @@ impl<'a> Elaborator<'a> {
         match member {
             Some(n) if (1..=count).contains(&n) => Ok(n - 1),
             _ => {
-                let error = Diagnostic::error(
-                    Code::E0212,
-                    index.span,
-                    format!("`{1}` has no member {0}", number.value, self.text(base.span)),
-                )
-                .hint(match count {
-                    0 => "the set is empty".to_owned(),
-                    1 => "the only member is `[1]`".to_owned(),
-                    count => {
-                        let name = self.text(base.span);
-                        format!("the members are `{name}[1]` to `{name}[{count}]`")
-                    }
-                });
+                let error =
+                    error!(E0212, index.span, "`{1}` has no member {0}", number.value, self.text(base.span))
+                        .hint(match count {
+                            0 => "the set is empty".to_owned(),
+                            1 => "the only member is `[1]`".to_owned(),
+                            count => {
+                                let name = self.text(base.span);
+                                format!("the members are `{name}[1]` to `{name}[{count}]`")
+                            }
+                        });
                 self.report(error)
             }
         }

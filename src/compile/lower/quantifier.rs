@@ -10,8 +10,6 @@ use super::super::wording::Given;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, BinaryOp, Expr, ExprKind, Ident, Quantifier};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 use super::super::dimension::Dimension;
@@ -226,12 +224,10 @@ impl Elaborator<'_> {
         let left_out = match set.except {
             Some(Who::Agent(id)) => Some(id),
             Some(Who::Running(_)) => {
-                let error = Diagnostic::error(
-                    Code::E0504,
-                    span,
-                    "a temporal formula cannot be quantified inside a fold over agents",
-                );
-                return self.report(error);
+                return self.report(error!(
+                    E0504,
+                    span, "a temporal formula cannot be quantified inside a fold over agents"
+                ));
             }
             None => None,
         };
@@ -274,15 +270,10 @@ impl Elaborator<'_> {
             Quantifier::Count => {
                 Ok(Typed::Tally(self.of_those_present(quantifier, each, &members, body.span)?))
             }
-            Quantifier::Fold(_) if members.iter().any(|id| self.passing.contains(id)) => {
-                let error = Diagnostic::error(
-                    Code::E0504,
-                    span,
-                    "aggregates over time cannot be folded over agents that arrive or leave",
-                )
-                .hint("fold the values of each state: `min<=10 s (min(… for a in doors))`");
-                self.report(error)
-            }
+            Quantifier::Fold(_) if members.iter().any(|id| self.passing.contains(id)) => self.report(
+                error!(E0504, span, "aggregates over time cannot be folded over agents that arrive or leave";
+                    hint: "fold the values of each state: `min<=10 s (min(… for a in doors))`"),
+            ),
             Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
         }
     }

@@ -6,8 +6,6 @@ use super::super::typed::Typed;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Bool, Num};
 use crate::syntax::ast::{Expr, Ident};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 impl Elaborator<'_> {
     pub(super) fn extremum(
@@ -18,16 +16,8 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         if arguments.len() < 2 {
-            let error = Diagnostic::error(
-                Code::E0204,
-                expr.span,
-                format!("`{}` needs at least two values", function.name),
-            )
-            .hint(format!(
-                "for a set write `{0}(… for a in crowd)`, for a time window `{0}<=10 s (…)`",
-                function.name
-            ));
-            return self.report(error);
+            return self.report(error!(E0204, expr.span, "`{}` needs at least two values", function.name;
+                hint: "for a set write `{0}(… for a in crowd)`, for a time window `{0}<=10 s (…)`", function.name));
         }
         let smallest = operator == Arithmetic::Min;
         let places = arguments.iter().map(|argument| argument.span);

@@ -6,8 +6,6 @@
 
 use super::super::elaborator::{Elaborator, Lowered};
 use crate::logic::{Node, NodeId, Relation};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 /// Most nodes of one count.
@@ -62,13 +60,8 @@ impl Elaborator<'_> {
             return Ok(self.node(Node::Or(formulas.to_vec())));
         }
         if n.saturating_mul(k.min(n - k + 1)) > LARGEST {
-            let error = Diagnostic::error(
-                Code::E0504,
-                span,
-                format!("a count of {n} temporal formulas is too large"),
-            )
-            .hint("count in each state: `F<=10 s (count(a in crowd: a in exit) >= 3)`");
-            return self.report(error);
+            return self.report(error!(E0504, span, "a count of {n} temporal formulas is too large";
+                hint: "count in each state: `F<=10 s (count(a in crowd: a in exit) >= 3)`"));
         }
         if n - k + 1 < k {
             // At least k hold exactly if fewer than n - k + 1 fail.

@@ -10,8 +10,6 @@ use crate::base::tick::{Clock, Tick};
 use crate::logic::{Aggregation, Node, Term, Window};
 use crate::syntax::ast::expression::{Temporal, TemporalPair};
 use crate::syntax::ast::{Aggregate, Bound, Expr};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 const ALWAYS: Window = Window { from: Tick(0), to: None };
@@ -19,16 +17,11 @@ const ALWAYS: Window = Window { from: Tick(0), to: None };
 impl Elaborator<'_> {
     fn expect_temporal(&mut self, span: Span, locals: &Locals) -> Lowered<()> {
         if locals.running > 0 {
-            let error = Diagnostic::error(
-                Code::E0504,
-                span,
-                "a temporal formula is not allowed inside a fold over agents",
-            );
-            return self.report(error);
+            return self
+                .report(error!(E0504, span, "a temporal formula is not allowed inside a fold over agents"));
         }
         if !self.temporal {
-            let error =
-                Diagnostic::error(Code::E0504, span, "temporal operators are allowed only in property files");
+            let error = error!(E0504, span, "temporal operators are allowed only in property files");
             return self.report(error);
         }
         Ok(())
@@ -56,9 +49,8 @@ impl Elaborator<'_> {
             Temporal::Globally => Node::Globally(window, body),
             Temporal::Next => {
                 if self.clock.is_jumps() {
-                    let error =
-                        Diagnostic::error(Code::E0507, span, "`X` is not available in continuous time")
-                            .hint("write `F[a, b]`, or set a `step` in the scenario");
+                    let error = error!(E0507, span, "`X` is not available in continuous time";
+                            hint: "write `F[a, b]`, or set a `step` in the scenario");
                     return self.report(error);
                 }
                 // X<=k p: p at exactly the k-th state, as in the paper; X p is X<=1.
@@ -66,13 +58,13 @@ impl Elaborator<'_> {
                     (None, _) => Tick(1),
                     (Some(Bound::Interval(start, end)), _) => {
                         let place = start.span.to(end.span);
-                        let error = Diagnostic::error(Code::E0503, place, "`X` needs one time, not an interval")
-                            .hint("`X<=0.5 s p` means p at exactly 0.5 s; for an interval write `F[a, b]` or `G[a, b]`");
+                        let error = error!(E0503, place, "`X` needs one time, not an interval";
+                            hint: "`X<=0.5 s p` means p at exactly 0.5 s; for an interval write `F[a, b]` or `G[a, b]`");
                         return self.report(error.formal());
                     }
                     (Some(_), Some(to)) => to,
                     (Some(_), None) => {
-                        return self.report(Diagnostic::error(Code::E0503, span, "`X` needs a finite time"));
+                        return self.report(error!(E0503, span, "`X` needs a finite time"));
                     }
                 };
                 Node::Finally(Window { from: at, to: Some(at) }, body)
@@ -112,9 +104,8 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         self.expect_temporal(span, locals)?;
         if aggregate == Aggregate::Sum && self.clock.is_jumps() {
-            let error =
-                Diagnostic::error(Code::E0508, span, "`sum` over time is not available in continuous time")
-                    .hint("write `mean`, the time average");
+            let error = error!(E0508, span, "`sum` over time is not available in continuous time";
+                    hint: "write `mean`, the time average");
             return self.report(error);
         }
         let window = self.window(Some(bound), body, locals);
@@ -138,20 +129,15 @@ impl Elaborator<'_> {
             Some(Bound::Interval(start, end)) => {
                 let ends = (self.time(start, locals), self.time(end, locals));
                 let Some(from) = ends.0? else {
-                    return self.report(Diagnostic::error(
-                        Code::E0503,
-                        start.span,
-                        "the start of an interval must be finite",
-                    ));
+                    return self.report(error!(E0503, start.span, "the start of an interval must be finite"));
                 };
                 let to = ends.1?;
                 if to.is_some_and(|to| to < from) {
-                    let error = Diagnostic::error(
-                        Code::E0503,
+                    return self.report(error!(
+                        E0503,
                         start.span.to(end.span),
-                        "the interval ends before it starts",
-                    );
-                    return self.report(error);
+                        "the interval ends before it starts"
+                    ));
                 }
                 Ok(Window { from, to })
             }
@@ -171,7 +157,7 @@ impl Elaborator<'_> {
     /// A time known now, as ticks.
     pub(in crate::compile) fn ticks(&mut self, number: Number, span: Span) -> Lowered<Tick> {
         if number.value < 0.0 {
-            return self.report(Diagnostic::error(Code::E0503, span, "a time bound cannot be negative"));
+            return self.report(error!(E0503, span, "a time bound cannot be negative"));
         }
         let steps = number.dimension == Dimension::STEPS
             || (number.dimension.is_none() && self.clock == Clock::Steps);
@@ -179,18 +165,14 @@ impl Elaborator<'_> {
             return match number.as_whole().and_then(|n| u64::try_from(n).ok()) {
                 Some(n) if !self.clock.is_jumps() => Ok(Tick(n)),
                 Some(_) => self.report(
-                    Diagnostic::error(
-                        Code::E0503,
-                        span,
-                        "bounds in steps are not available in continuous time",
-                    )
-                    .formal()
-                    .hint("write a time such as `5 s`"),
+                    error!(E0503, span, "bounds in steps are not available in continuous time")
+                        .formal()
+                        .hint("write a time such as `5 s`"),
                 ),
                 None => {
                     let below = number.value.floor();
-                    let error = Diagnostic::error(Code::E0501, span, "the number of steps must be whole");
-                    self.report(error.hint(format!("the nearest bounds are #{below} and #{}", below + 1.0)))
+                    self.report(error!(E0501, span, "the number of steps must be whole";
+                        hint: "the nearest bounds are #{below} and #{}", below + 1.0))
                 }
             };
         }
@@ -212,7 +194,7 @@ impl Elaborator<'_> {
                     "write a time such as `10 s`, or a number of steps such as `#10` (`10 steps`)".to_owned()
                 }
             };
-            let error = Diagnostic::error(Code::E0503, span, "the bound needs a unit").formal();
+            let error = error!(E0503, span, "the bound needs a unit").formal();
             return self.report(error.hint(hint));
         }
         if number.dimension != Dimension::TIME {
@@ -222,7 +204,7 @@ impl Elaborator<'_> {
             Clock::Stepped(step) => step,
             Clock::Jumps(tick) => return self.moment(number, tick, span),
             Clock::Steps => {
-                let error = Diagnostic::error(Code::E0503, span, "the steps of this scenario have no length")
+                let error = error!(E0503, span, "the steps of this scenario have no length")
                     .formal()
                     .hint("write the bound in steps: `#10` or `10 steps`");
                 return self.report(error);
@@ -246,40 +228,32 @@ impl Elaborator<'_> {
                     let same = Decimal::parse(&time.to_string()).map(|time| self.clock.tick_at(time));
                     if same == Some(Ok(tick)) { format!("{time} s") } else { format!("#{}", tick.0) }
                 };
-                let error = Diagnostic::error(
-                    Code::E0501,
-                    span,
-                    format!("`{}` is not a multiple of the step of {step} s", self.text(span)),
+                self.report(
+                    error!(E0501, span, "`{}` is not a multiple of the step of {step} s", self.text(span);
+                    hint: "the nearest bounds are {} and {}", seconds(below), seconds(above)),
                 )
-                .hint(format!(
-                    "the nearest bounds are {} and {}",
-                    seconds(below),
-                    seconds(above)
-                ));
-                self.report(error)
             }
-            _ => self.report(Diagnostic::error(Code::E0501, span, "the time is out of range")),
+            _ => self.report(error!(E0501, span, "the time is out of range")),
         }
     }
 
     /// A time in continuous time, as ticks. One between two ticks is noted: all will be compiled again.
     fn moment(&mut self, number: Number, tick: Decimal, span: Span) -> Lowered<Tick> {
         let Some(time) = number.exact.or_else(|| moments::nearest(number.value, tick)) else {
-            return self.report(Diagnostic::error(Code::E0501, span, "the time is out of range"));
+            return self.report(error!(E0501, span, "the time is out of range"));
         };
         match self.clock.tick_at(time) {
             Ok(found) => Ok(found),
             Err((below, above)) if above.0 < u64::MAX => {
                 let horizon = Decimal::whole(self.horizon.0 as i64).mul(tick);
                 if horizon.and_then(|horizon| moments::finer(tick, horizon, time)).is_none() {
-                    let error = Diagnostic::error(Code::E0501, span, "the time is too short for the horizon")
-                        .hint("the horizon can be at most about 10^12 times the shortest time");
-                    return self.report(error);
+                    return self.report(error!(E0501, span, "the time is too short for the horizon";
+                        hint: "the horizon can be at most about 10^12 times the shortest time"));
                 }
                 self.between.push(time);
                 Ok(below)
             }
-            Err(_) => self.report(Diagnostic::error(Code::E0501, span, "the time is out of range")),
+            Err(_) => self.report(error!(E0501, span, "the time is out of range")),
         }
     }
 }

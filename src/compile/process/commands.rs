@@ -9,20 +9,14 @@ use crate::model::{Bool, Branch, Command, Domain, Num, Timing, VariableId};
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::process::{self as ast, ProcessDecl, ProcessItem};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 impl Elaborator<'_> {
     /// Commands of one process are all timed or all not; whether they are.
     pub(super) fn one_kind(&mut self, decl: &ProcessDecl, commands: &[Command]) -> bool {
         let timed = |command: &Command| command.timing != Timing::Step;
         if commands.iter().any(timed) && !commands.iter().all(timed) {
-            let error = Diagnostic::error(
-                Code::E0905,
-                decl.name.span,
-                format!("some commands of `{}` have a rate or delay and others have none", decl.name.name),
-            )
-            .hint("write two processes, one with times and one without; each can read the other");
-            self.note(error);
+            self.note(error!(E0905, decl.name.span, "some commands of `{}` have a rate or delay and others have none", decl.name.name;
+                hint: "write two processes, one with times and one without; each can read the other"));
             false
         } else if commands.iter().any(timed)
             && let Some(span) = decl.items.iter().find_map(|item| match item {
@@ -30,9 +24,8 @@ impl Elaborator<'_> {
                 _ => None,
             })
         {
-            let error = Diagnostic::error(Code::E0905, span, "commands with times cannot have `choose`")
-                .hint("remove `choose`: the earliest command is executed");
-            self.note(error);
+            self.note(error!(E0905, span, "commands with times cannot have `choose`";
+                hint: "remove `choose`: the earliest command is executed"));
             false
         } else {
             true
@@ -61,7 +54,7 @@ impl Elaborator<'_> {
         // Of several branches each has a weight; one that lacks it was reported.
         let weighed = command.branches.len() == 1 || command.branches.iter().all(|b| b.weight.is_some());
         if let Some(wrong) = known.filter(|_| weighed).and_then(|known| wrong_weights(&known)) {
-            self.note(Diagnostic::error(Code::E0902, command.span, wrong));
+            self.note(error!(E0902, command.span, "{wrong}"));
             return Err(guard);
         }
         guard.map(|guard| Command { guard, timing, branches }).map_err(Err)
@@ -75,10 +68,9 @@ impl Elaborator<'_> {
         for (k, update) in branch.updates.iter().enumerate() {
             let value = self.update(at, copy, update, locals);
             if branch.updates[..k].iter().any(|other| other.target.name == update.target.name) {
-                self.note(Diagnostic::error(
-                    Code::E0202,
-                    update.target.span,
-                    format!("`{}` is set twice in one branch", update.target.name),
+                self.note(error!(
+                    E0202,
+                    update.target.span, "`{}` is set twice in one branch", update.target.name
                 ));
                 failed = true;
             }
@@ -139,11 +131,7 @@ impl Elaborator<'_> {
         if let Num::Constant(value) = num
             && !domain.contains(value)
         {
-            return self.report(Diagnostic::error(
-                Code::E0903,
-                span,
-                format!("`{}` cannot become {value}", update.target.name),
-            ));
+            return self.report(error!(E0903, span, "`{}` cannot become {value}", update.target.name));
         }
         Ok((id, num))
     }

@@ -19,7 +19,6 @@ use crate::model::{Bool, Command, Domain, Num, Process, Processes, Timing, Varia
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
 use crate::syntax::ast::{Expr, Ident, Item, LetDecl, ScenarioFile};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use parts::Writing;
 use reachable::Lines;
@@ -153,10 +152,9 @@ impl Elaborator<'_> {
                 Ok(Some(n @ 1..=MOST_COPIES)) => n as u32,
                 Err(Reported) => 1,
                 Ok(_) => {
-                    self.note(Diagnostic::error(
-                        Code::E0402,
-                        count.span,
-                        format!("the number of copies must be a whole number from 1 to {MOST_COPIES}"),
+                    self.note(error!(
+                        E0402,
+                        count.span, "the number of copies must be a whole number from 1 to {MOST_COPIES}"
                     ));
                     1
                 }
@@ -168,10 +166,9 @@ impl Elaborator<'_> {
             let declared = Inside::of(item, Inside::Variable(initials.len()));
             let Some((name, inside)) = declared else { continue };
             if let Some(first) = spans.insert(&name.name, name.span) {
-                let error =
-                    Diagnostic::error(Code::E0202, name.span, format!("`{}` is declared twice", name.name))
-                        .related(first, "first declared here")
-                        .hint("rename one of them");
+                let error = error!(E0202, name.span, "`{}` is declared twice", name.name)
+                    .related(first, "first declared here")
+                    .hint("rename one of them");
                 self.note(error);
                 self.processes[at].is_unknown = true;
                 if let ProcessItem::Var(var) = item {
@@ -235,20 +232,16 @@ impl Elaborator<'_> {
         let span = var.initial.span;
         let number = |this: &mut Self, typed: Typed| match typed {
             Typed::Number(number) if number.value.is_finite() => Ok(number),
-            Typed::Num(..) => this.report(Diagnostic::error(
-                Code::E0304,
-                span,
-                "the initial value must be known before a trial starts",
-            )),
+            Typed::Num(..) => {
+                this.report(error!(E0304, span, "the initial value must be known before a trial starts"))
+            }
             found => this.mismatch(span, "a number", &found),
         };
         let truth = |this: &mut Self, typed: Typed| match typed {
             Typed::Truth(Bool::Constant(value), _) => Ok(f64::from(value)),
-            Typed::Truth(..) => this.report(Diagnostic::error(
-                Code::E0304,
-                span,
-                "the initial value must be known before a trial starts",
-            )),
+            Typed::Truth(..) => {
+                this.report(error!(E0304, span, "the initial value must be known before a trial starts"))
+            }
             found => this.mismatch(span, "`true` or `false`", &found),
         };
         match &var.domain {
@@ -257,11 +250,7 @@ impl Elaborator<'_> {
                 let high_end = self.whole(high, locals);
                 let (low_end, high_end) = (low_end?, high_end?);
                 if low_end > high_end {
-                    return self.report(Diagnostic::error(
-                        Code::E0405,
-                        low.span.to(high.span),
-                        "the range is empty",
-                    ));
+                    return self.report(error!(E0405, low.span.to(high.span), "the range is empty"));
                 }
                 let domain = Domain::Whole { low: low_end, high: high_end };
                 let initial = initial
@@ -280,9 +269,8 @@ impl Elaborator<'_> {
                     Ok((number.dimension, Domain::Real, Ok(number.value)))
                 }
                 "int" => {
-                    let error =
-                        Diagnostic::error(Code::E0405, name.span, "an integer variable needs a range")
-                            .hint(format!("write `var {}: 0 .. 10 = …`", var.name.name));
+                    let error = error!(E0405, name.span, "an integer variable needs a range";
+                            hint: "write `var {}: 0 .. 10 = …`", var.name.name);
                     self.report(error)
                 }
                 _ => {
@@ -308,10 +296,9 @@ impl Elaborator<'_> {
             return self.wrong_dimension(span, Dimension::NONE, number.dimension);
         }
         match domain {
-            Domain::Whole { low, high } if !domain.contains(number.value) => self.report(Diagnostic::error(
-                Code::E0903,
-                span,
-                format!("`{}` must be a whole number from {low} to {high}", var.name.name),
+            Domain::Whole { low, high } if !domain.contains(number.value) => self.report(error!(
+                E0903,
+                span, "`{}` must be a whole number from {low} to {high}", var.name.name
             )),
             _ => Ok(domain.kept(number.value)),
         }
@@ -323,16 +310,12 @@ impl Elaborator<'_> {
             Some(whole) if whole.abs() < LARGEST => Ok(whole),
             _ if number.value.fract() == 0.0 => {
                 let said = format!("`{}` is too large for an end of a range", self.text(expr.span));
-                let error = Diagnostic::error(Code::E0405, expr.span, said)
+                let error = error!(E0405, expr.span, "{said}")
                     .label(format!("the limit is ±{}", LARGEST - 1))
                     .hint("for a number of any size write `real` instead of a range");
                 self.report(error)
             }
-            _ => self.report(Diagnostic::error(
-                Code::E0405,
-                expr.span,
-                "the ends of a range must be whole numbers",
-            )),
+            _ => self.report(error!(E0405, expr.span, "the ends of a range must be whole numbers")),
         }
     }
 

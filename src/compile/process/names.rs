@@ -8,7 +8,6 @@ use crate::compile::wording::{Frame, Use};
 use crate::model::{Bool, Comparison, Domain, Function, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
@@ -37,15 +36,9 @@ impl<'a> Elaborator<'a> {
                     _ => Typed::Num(value, dimension),
                 })
             }
-            Inside::Let(decl) if !decl.arguments.is_empty() => {
-                let error = Diagnostic::error(
-                    Code::E0204,
-                    span,
-                    format!("`{name}` is a function of {} arguments", decl.arguments.len()),
-                )
-                .hint(format!("call it inside the process: `{name}(…)`"));
-                self.report(error)
-            }
+            Inside::Let(decl) if !decl.arguments.is_empty() => self
+                .report(error!(E0204, span, "`{name}` is a function of {} arguments", decl.arguments.len();
+                    hint: "call it inside the process: `{name}(…)`")),
             Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
                 let path = format!("{}.{name}", process.decl.name.name);
                 let frame = self.label((at, copy)).map(|label| Arc::new(Frame::inside(label)));
@@ -83,7 +76,7 @@ impl<'a> Elaborator<'a> {
             Inside::Let(_) | Inside::Label(_) => "a name inside",
         };
         let label = format!("{what} `{}`, which has no value yet", process.decl.name.name);
-        let error = Diagnostic::error(Code::E0201, span, format!("unknown name `{name}`")).label(label);
+        let error = error!(E0201, span, "unknown name `{name}`").label(label);
         Some(self.report(error.hint("initial values cannot depend on the process")))
     }
 
@@ -104,10 +97,7 @@ impl<'a> Elaborator<'a> {
     fn too_early<T>(&mut self, (at, what): (u32, &str), span: Span) -> Lowered<T> {
         let name = self.processes.get(at as usize).map_or("", |process| process.decl.name.name.as_str());
         let label = format!("{what} `{name}`, which changes during a trial");
-        self.report(
-            Diagnostic::error(Code::E0304, span, "the value must be known before a trial starts")
-                .label(label),
-        )
+        self.report(error!(E0304, span, "the value must be known before a trial starts").label(label))
     }
 
     /// An error where the copies of an array of processes are not counted yet.
@@ -117,10 +107,8 @@ impl<'a> Elaborator<'a> {
             return Ok(());
         }
         let text = format!("`{}` is not available here", self.text(span));
-        self.report(
-            Diagnostic::error(Code::E0205, span, text)
-                .hint("numbers of copies and initial values cannot depend on processes"),
-        )
+        self.report(error!(E0205, span, "{text}";
+                hint: "numbers of copies and initial values cannot depend on processes"))
     }
 
     /// The names of the process around the present place.
@@ -174,13 +162,9 @@ impl<'a> Elaborator<'a> {
             Typed::Process { process, copy } => (process, copy),
             Typed::Agent(who) => return self.lower_mode(who, base.span, member),
             Typed::Processes(_) => {
-                let error = Diagnostic::error(
-                    Code::E0305,
-                    base.span,
-                    "expected a process, found an array of processes",
-                )
-                .hint(format!("choose one: `{}[1].{}`", self.text(base.span), member.name));
-                return self.report(error);
+                return self
+                    .report(error!(E0305, base.span, "expected a process, found an array of processes";
+                    hint: "choose one: `{}[1].{}`", self.text(base.span), member.name));
             }
             Typed::Vector(x, y, dimension) if matches!(member.name.as_str(), "x" | "y") => {
                 return Ok(Typed::Num(if member.name == "x" { x } else { y }, dimension));
@@ -199,7 +183,7 @@ impl<'a> Elaborator<'a> {
                     }
                     _ => "the values of agents are functions: `speed(user)`".to_owned(),
                 };
-                return self.report(Diagnostic::error(Code::E0305, base.span, said).hint(hint));
+                return self.report(error!(E0305, base.span, "{said}"; hint: "{hint}"));
             }
         };
         match self.lower_inside((at, copy), &member.name, member.span) {

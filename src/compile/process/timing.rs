@@ -6,8 +6,6 @@ use crate::compile::laws;
 use crate::model::{Law, Num, Timing};
 use crate::syntax::ast::process as ast;
 use crate::syntax::ast::{Expr, Value};
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 
 /// 1/s
 const PER_SECOND: Dimension = Dimension([0, 0, -1, 0, 0]);
@@ -16,13 +14,8 @@ impl Elaborator<'_> {
     pub(super) fn timing(&mut self, command: &ast::Command, locals: &Locals) -> Lowered<Timing> {
         match &command.timing {
             None if self.clock.is_jumps() => {
-                let error = Diagnostic::error(
-                    Code::E0905,
-                    command.span,
-                    "this command has no rate, but other commands of this scenario have one",
-                )
-                .hint("add `at` with a rate or `after` with a distribution, or set a `step` in the scenario");
-                self.report(error)
+                self.report(error!(E0905, command.span, "this command has no rate, but other commands of this scenario have one";
+                    hint: "add `at` with a rate or `after` with a distribution, or set a `step` in the scenario"))
             }
             None => Ok(Timing::Step),
             Some(ast::Timing::Rate(rate)) => self.rate(rate, locals).map(Timing::Rate),
@@ -42,7 +35,7 @@ impl Elaborator<'_> {
         }
         match num {
             Num::Constant(value) if !(value >= 0.0 && value.is_finite()) => {
-                self.report(Diagnostic::error(Code::E0904, rate.span, format!("a rate cannot be {value} /s")))
+                self.report(error!(E0904, rate.span, "a rate cannot be {value} /s"))
             }
             num => Ok(num),
         }
@@ -55,9 +48,9 @@ impl Elaborator<'_> {
         if least < 0.0 {
             let span = laws::value_span(delay);
             if law.constant().is_some() {
-                return self.report(Diagnostic::error(Code::E0906, span, "a delay cannot be negative"));
+                return self.report(error!(E0906, span, "a delay cannot be negative"));
             }
-            let error = Diagnostic::error(Code::E0906, span, "the delay can be negative");
+            let error = error!(E0906, span, "the delay can be negative");
             let error = laws::truncate(error, &law, &self.text(span));
             return self.report(error);
         }

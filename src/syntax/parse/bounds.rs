@@ -1,7 +1,6 @@
 //! Slips around operators that look ahead in time, and their bounds.
 
 use super::builder::Builder;
-use super::code;
 use super::fault::Fault;
 use super::grammar::{Grammar, Rule};
 use super::{lexeme, quantity};
@@ -30,12 +29,8 @@ impl Builder<'_> {
         let (at, letter) =
             operators.max().filter(|(_, letter)| !self.names_a_value(letter.encode_utf8(&mut [0; 4])))?;
         Some(
-            Diagnostic::error(
-                code::UNEXPECTED,
-                self.at(at..at + letter.len_utf8()),
-                format!("the temporal operator `{letter}` is not allowed in a scenario"),
-            )
-            .hint("move this formula to a property file (`.bltl`)"),
+            error!(E0101, self.at(at..at + letter.len_utf8()), "the temporal operator `{letter}` is not allowed in a scenario";
+                hint: "move this formula to a property file (`.bltl`)"),
         )
     }
 
@@ -56,14 +51,8 @@ impl Builder<'_> {
         let (unit_at, word) = lexeme::word_before(&self.text, fault.at)?;
         let place = self.place(fault.at, fault.found);
         if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
-            return Some(
-                Diagnostic::error(
-                    code::BOUND,
-                    place,
-                    format!("the bound of `{word}` must be written with `<=`"),
-                )
-                .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
-            );
+            return Some(error!(E0119, place, "the bound of `{word}` must be written with `<=`";
+                    hint: "write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`"));
         }
         if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in"))
             || !quantity::UNITS.contains(&word)
@@ -82,13 +71,9 @@ impl Builder<'_> {
         let formula = format!("({word} {} …)", fault.found);
         let hint = format!("write parentheses: `{operator}{mark}{number}{} {formula}`", self.unit);
         Some(
-            Diagnostic::error(
-                code::BOUND_TOOK_NAME,
-                place,
-                format!("expected a formula, found {}", self.quote(fault.found)),
-            )
-            .related(unit, "read as the unit of the bound")
-            .hint(hint),
+            error!(E0115, place, "expected a formula, found {}", self.quote(fault.found))
+                .related(unit, "read as the unit of the bound")
+                .hint(hint),
         )
     }
 }

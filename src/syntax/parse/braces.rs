@@ -6,11 +6,11 @@
 //! the error. Only texts in which braces do not pair up are looked at: nothing depends on layout in those in which
 //! they do.
 
-use super::code;
 use super::fault::{quote, starts_declaration};
 use super::layout::Token;
 use super::lexeme::starts_name;
 use crate::syntax::ast::Broken;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::keywords::Place;
 use crate::syntax::source::{Source, Span};
@@ -222,27 +222,26 @@ impl<'s, 't> Text<'s, 't> {
                 let found = self.tokens[brace].text;
                 let wanted = if found == "}" { "{" } else { "}" };
                 let title = format!("expected `{wanted}`, found {}", quote(found));
-                Diagnostic::error(code::UNEXPECTED, span(brace), title)
+                error!(E0101, span(brace), "{title}")
             }
-            Slip::Stray { close } => Diagnostic::error(code::STRAY, span(close), "`}` has no opening `{`"),
+            Slip::Stray { close } => error!(E0103, span(close), "`}}` has no opening `{{`"),
             Slip::Opens { open } => {
-                Diagnostic::error(code::UNEXPECTED, span(open), "unexpected `{`, which is not closed")
+                error!(E0101, span(open), "unexpected `{{`, which is not closed")
             }
             Slip::NotOpened { line } => {
                 let title = format!("expected `{{`, found {}", found(line));
-                Diagnostic::error(code::UNEXPECTED, end_of(line, false), title)
+                error!(E0101, end_of(line, false), "{title}")
             }
             Slip::NotClosed { open, line }
                 if self.tokens.get(self.lines[line].tokens.end).is_some_and(|next| next.text == "}") =>
             {
-                Diagnostic::error(code::UNCLOSED, span(open), "`{` is not closed")
+                error!(E0102, span(open), "`{{` is not closed")
                     .related(end_of(line, true), "this closes the block around it")
             }
             Slip::NotClosed { open, line } => {
                 let spans_lines = !self.lines[line].tokens.contains(&open);
                 let title = format!("expected `}}`, found {}", found(line));
-                Diagnostic::error(code::UNCLOSED, end_of(line, spans_lines), title)
-                    .related(span(open), "`{` is not closed")
+                error!(E0102, end_of(line, spans_lines), "{title}").related(span(open), "`{` is not closed")
             }
         }
     }
@@ -353,7 +352,7 @@ pub(super) fn together(source: &Source, said: Vec<Diagnostic>, slips: Vec<Diagno
             Some(slip)
                 if !told.contains(&slip)
                     && (bytes(&slips[slip]).contains(&at)
-                        || slips[slip].code == code::STRAY && start(&slips[slip]) > Some(at)) =>
+                        || slips[slip].code == Code::E0103 && start(&slips[slip]) > Some(at)) =>
             {
                 told.push(slip);
                 kept.push(one);

@@ -3,10 +3,10 @@
 //! The grammar fixes the shape of every pair, so the builders take the parts in order and give up
 //! (`None`) on one that is not there; nothing panics.
 
-use super::code;
 use super::grammar::{Grammar, Rule};
 use super::layout::{Item, Layout, Token};
 use crate::syntax::ast::{Broken, Ident, Text};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::keywords::{Declares, Place, keyword};
 use crate::syntax::source::{Source, Span};
@@ -178,7 +178,7 @@ impl<'s> Builder<'s> {
                     let refusal = self.refusal(rule, error);
                     // A line that begins no item, right behind one that could not be read, is a piece of it.
                     let is_piece = is_broken && refusal.is_alone || place < foreign_end;
-                    if refusal.diagnostic.code == code::FOREIGN {
+                    if refusal.diagnostic.code == Code::E0130 {
                         let word = format!("end{}", super::lexeme::first(&text));
                         let is_end = |item: &Item| self.layout.words(item).eq([word.as_str()]);
                         foreign_end = items.iter().rposition(is_end).map_or(foreign_end, |end| end + 1);
@@ -242,7 +242,7 @@ impl<'s> Builder<'s> {
         let own = self.item?.blocks.iter().find(|block| block.open == open)?;
         let unexpected = |span: Span, wanted: &str| {
             let found = self.source.slice(span);
-            Diagnostic::error(code::UNEXPECTED, span, format!("expected {wanted}, found `{found}`"))
+            error!(E0101, span, "expected {wanted}, found `{found}`")
         };
         match own.items.as_slice() {
             [] => {
@@ -364,10 +364,8 @@ impl<'s> Builder<'s> {
                         let unknown = other.map_or(' ', |(_, c)| c);
                         let start = span.start as usize + at;
                         let place = Span::new(span.source, start, start + 1 + unknown.len_utf8());
-                        self.say(
-                            Diagnostic::error(code::ESCAPE, place, format!("unknown escape `\\{unknown}`"))
-                                .hint("the escapes are `\\\"`, `\\\\`, `\\n` and `\\t`"),
-                        );
+                        self.say(error!(E0117, place, "unknown escape `\\{unknown}`";
+                                hint: "the escapes are `\\\"`, `\\\\`, `\\n` and `\\t`"));
                         value.push(unknown);
                     }
                 },

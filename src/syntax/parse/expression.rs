@@ -5,12 +5,12 @@
 //! does recurse, its height is limited too.
 
 use super::builder::{Builder, Pair, Parts};
-use super::code;
 use super::grammar::Rule;
 use super::nesting::NESTING;
 use crate::syntax::ast::{
     Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Quantifier, Temporal, TemporalPair, UnaryOp,
 };
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -176,10 +176,8 @@ impl Builder<'_> {
             }
             if first == COMPARISON && level == COMPARISON {
                 let span = self.span(place);
-                self.say(
-                    Diagnostic::error(code::CHAIN, span, "comparisons cannot be chained")
-                        .hint("join two comparisons with `&`: `a < b & b < c`"),
-                );
+                self.say(error!(E0109, span, "comparisons cannot be chained";
+                        hint: "join two comparisons with `&`: `a < b & b < c`"));
                 return None;
             }
             let operator = yard.operators.pop()?;
@@ -307,10 +305,8 @@ impl Builder<'_> {
             // Operators in a row stand upon one another, the last one on the highest of the parts.
             let title =
                 format!("the expression has more than {HEIGHT} levels; each operator in a chain is a level");
-            self.say(
-                Diagnostic::error(code::TOO_LONG, built.expr.span, title)
-                    .hint("name parts of it with `let`, or write a fold such as `forall a in S: …`"),
-            );
+            self.say(error!(E0120, built.expr.span, "{title}";
+                    hint: "name parts of it with `let`, or write a fold such as `forall a in S: …`"));
             return None;
         }
         Some(built)
@@ -321,7 +317,7 @@ impl Builder<'_> {
             (Infix::Plain(BinaryOp::Implies), ExprKind::Temporal(..)) if left.bare && left.open => {
                 let whole = self.source.slice(left.expr.span);
                 let warning = Diagnostic::warning(
-                    code::OPEN_IMPLICATION,
+                    Code::W0101,
                     left.expr.span.to(right.expr.span),
                     "the temporal operator binds tighter than `=>`",
                 )
@@ -335,7 +331,7 @@ impl Builder<'_> {
                     && quantity.unit.as_ref().is_some_and(|unit| unit.factors[0].name.name != "%") =>
             {
                 let warning = Diagnostic::warning(
-                    code::POWER_OF_QUANTITY,
+                    Code::W0102,
                     left.expr.span.to(right.expr.span),
                     "the power applies to the number and its unit",
                 )
@@ -356,8 +352,8 @@ impl Builder<'_> {
             // `5. m/s`
             let place =
                 Span { end: span.end.min(target.expr.span.end + 1), start: target.expr.span.end, ..span };
-            let error = Diagnostic::error(code::UNEXPECTED, place, "a number cannot end in a point");
-            self.say(error.hint(format!("write `{written}`, or `{written}.0`")));
+            self.say(error!(E0101, place, "a number cannot end in a point";
+                hint: "write `{written}`, or `{written}.0`"));
             return None;
         }
         let part = Parts::of(pair).next()?;
@@ -465,7 +461,7 @@ impl Builder<'_> {
                     "any" => Some("exists"),
                     _ => None,
                 };
-                let error = Diagnostic::error(code::NO_FOLD, function.span, title);
+                let error = error!(E0122, function.span, "{title}");
                 let body = arguments.pop()?.expr.span;
                 self.say(match quantifier {
                     Some(quantifier) => {

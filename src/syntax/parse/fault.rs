@@ -1,7 +1,6 @@
 //! From an item that its rule does not take to one diagnostic at the exact place: where the rule failed.
 
 use super::builder::Builder;
-use super::code;
 use super::grammar::{Grammar, Rule};
 use super::{layout, lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
@@ -91,7 +90,7 @@ impl Builder<'_> {
         }
         let place = self.place(fault.at, fault.found);
         let mut diagnostic = if matches!(fault.found, ")" | "]") && self.is_unmatched(fault.at) {
-            Diagnostic::error(code::STRAY, place, format!("`{}` has no opening bracket", fault.found))
+            error!(E0103, place, "`{}` has no opening bracket", fault.found)
         } else {
             let expected = expected_nouns(&fault.expected);
             let title = if expected.is_empty() {
@@ -99,7 +98,7 @@ impl Builder<'_> {
             } else {
                 format!("expected {expected}, found {}", self.quote(fault.found))
             };
-            Diagnostic::error(code::UNEXPECTED, place, title)
+            error!(E0101, place, "{title}")
         };
         let closes = fault.expected.contains(&Rule::t_rparen) || fault.expected.contains(&Rule::t_rbracket);
         if (closes || starts_declaration(fault.found))
@@ -109,11 +108,10 @@ impl Builder<'_> {
             if self.is_unmatched(open) && (fault.at >= self.text.len() || self.ends_bracket(fault)) {
                 // What follows on a later line, or cannot stand in it, belongs to something else: the bracket is the error.
                 let close = nesting::partner(bracket);
-                return Diagnostic::error(code::UNCLOSED, span, format!("`{bracket}` is not closed"))
-                    .related(
-                        self.place(fault.at, fault.found),
-                        format!("expected `{close}` before this text"),
-                    );
+                return error!(E0102, span, "`{bracket}` is not closed").related(
+                    self.place(fault.at, fault.found),
+                    format!("expected `{close}` before this text"),
+                );
             }
             if closes {
                 diagnostic = diagnostic.related(span, format!("`{bracket}` is still open"));
@@ -157,7 +155,7 @@ impl Builder<'_> {
         let place = self.place(fault.at, fault.found);
         let title = format!("expected the end of the line, found {}", quote(fault.found));
         let items = if fault.rule == Rule::line_of_fields { "fields" } else { "items on one line" };
-        Some(Diagnostic::error(code::UNEXPECTED, place, title).hint(format!("write `;` between two {items}")))
+        Some(error!(E0101, place, "{title}"; hint: "write `;` between two {items}"))
     }
 
     /// Where the word belongs that was found where a declaration is wanted.

@@ -4,7 +4,6 @@
 //! names. A spelling is reported only if the text reads on once it is replaced.
 
 use super::builder::Builder;
-use super::code;
 use super::fault::{Fault, failure};
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;
@@ -400,7 +399,7 @@ impl Builder<'_> {
             language if !language.contains(' ') => format!("`{}` is {language} syntax", hit.shown),
             title => title.replace("{}", &hit.shown),
         };
-        let error = Diagnostic::error(code::FOREIGN, hit.place, title);
+        let error = error!(E0130, hit.place, "{title}");
         Some(error.hint(match hit.ours.strip_prefix(' ') {
             Some(advice) => advice.to_owned(),
             None => format!("write `{}`", hit.ours),
@@ -411,7 +410,7 @@ impl Builder<'_> {
     pub(super) fn slip_of_operator(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let hit = self.foreign(fault, OPERATORS)?;
         let title = format!("`{}` is not an operator here", hit.shown);
-        Some(Diagnostic::error(code::OPERATOR, hit.place, title).hint(format!("write `{}`", hit.ours)))
+        Some(error!(E0114, hit.place, "{title}"; hint: "write `{}`", hit.ours))
     }
 
     /// The first spelling of a table that a fault lies in, and with which replaced the text reads on.

@@ -7,7 +7,6 @@ mod agents;
 mod bounds;
 mod braces;
 mod builder;
-mod code;
 pub(super) mod comments;
 mod expression;
 mod fault;
@@ -35,6 +34,7 @@ pub(super) use builder::{Pair, inner};
 
 use super::ast::{Expr, PropertyFile, ScenarioFile};
 
+use super::codes::Code;
 use super::diagnostic::{Diagnostic, Severity};
 use super::source::{Source, SourceId, Span};
 use builder::Builder;
@@ -45,11 +45,11 @@ use layout::Layout;
 #[allow(clippy::result_large_err, reason = "called once a file")]
 pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnostic> {
     if u32::try_from(bytes.len()).is_err() {
-        return Err(Diagnostic::placeless(code::ENCODING, format!("{name} is larger than 4 GiB")));
+        return Err(Diagnostic::placeless(Code::E0107, format!("{name} is larger than 4 GiB")));
     }
     match std::str::from_utf8(bytes) {
         Ok(text) if text.trim_matches(|c: char| c.is_whitespace() || c == '\u{FEFF}').is_empty() => {
-            Err(Diagnostic::placeless(code::EMPTY, format!("{name} is empty")))
+            Err(Diagnostic::placeless(Code::E0108, format!("{name} is empty")))
         }
         Ok(text) => Ok(Source::new(id, name, text)),
         Err(error) => {
@@ -63,7 +63,7 @@ pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnost
             } else {
                 "save the file as UTF-8"
             };
-            Err(Diagnostic::error(code::ENCODING, Span::new(id, at, at + 1), title).hint(hint))
+            Err(error!(E0107, Span::new(id, at, at + 1), "{title}"; hint: "{hint}"))
         }
     }
 }

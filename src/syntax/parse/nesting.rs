@@ -1,6 +1,5 @@
 //! Scans before the grammar sees a text: how deep its brackets nest, and comments that never end. They recurse nowhere.
 
-use super::code;
 use super::layout::{self, Token};
 use super::lexeme;
 use crate::syntax::diagnostic::Diagnostic;
@@ -11,12 +10,8 @@ pub(super) const NESTING: u16 = 256;
 
 /// The error for nesting that is too deep.
 pub(super) fn too_deep(span: Span) -> Diagnostic {
-    Diagnostic::error(
-        code::TOO_DEEP,
-        span,
-        format!("brackets and prefixes are nested more than {NESTING} deep"),
-    )
-    .hint("name inner parts with `let`")
+    error!(E0106, span, "brackets and prefixes are nested more than {NESTING} deep";
+        hint: "name inner parts with `let`")
 }
 
 /// That the brackets of a file nest too deep.
@@ -43,7 +38,7 @@ pub(super) fn open_comment(source: &Source) -> Option<(usize, Diagnostic)> {
         let rest = &text[at..];
         if rest.starts_with("/*") && !rest[2..].contains("*/") {
             let place = Span::new(source.id, at, at + 2);
-            let error = Diagnostic::error(code::COMMENT, place, "the comment is not closed");
+            let error = error!(E0104, place, "the comment is not closed");
             return Some((at, error.hint("close it with `*/`; a comment with `//` ends with its line")));
         }
         at += lexeme::trivia(rest).unwrap_or_else(|| lexeme::first(rest).len());

@@ -1,14 +1,12 @@
 //! Processes and behaviours.
 
 use super::builder::{Builder, Pair, Parts};
-use super::code;
 use super::grammar::Rule;
 use super::quantity;
 use crate::syntax::ast::{
     BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, Expr, ExprKind, OnDecl,
     ProcessDecl, ProcessItem, StateDecl, Timing, Transition, Update, Value, VarDecl,
 };
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Builder<'_> {
@@ -112,8 +110,8 @@ impl Builder<'_> {
         }
         for (_, span) in branches.iter().filter(|(has_weight, _)| !has_weight) {
             self.say(
-                Diagnostic::error(code::WEIGHT, *span, "a branch has no weight")
-                    .hint("write `1/2: …` before each branch; write a Boolean value with `|` in parentheses"),
+                error!(E0116, *span, "a branch has no weight";
+                    hint: "write `1/2: …` before each branch; write a Boolean value with `|` in parentheses"),
             );
         }
     }
@@ -166,8 +164,8 @@ impl Builder<'_> {
             }
             if !transitions.is_empty() {
                 let title = "fields of a state must come before its transitions";
-                let error = Diagnostic::error(code::FIELD_PLACE, builder.span(&part), title);
-                builder.say(error.hint("move it before the transitions"));
+                builder.say(error!(E0118, builder.span(&part), "{title}";
+                    hint: "move it before the transitions"));
             }
             fields.push(builder.field(part)?);
             Some(())

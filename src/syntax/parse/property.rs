@@ -1,13 +1,11 @@
 //! Property files: properties and queries.
 
 use super::builder::{Builder, Pair, Parts};
-use super::code;
 use super::grammar::Rule;
 use crate::syntax::ast::{
     BinaryOp, Binding, Clauses, Expr, ExprKind, Ident, Measure, MeasureKind, Method, Moment, PropertyFile,
     PropertyItem, Query, QueryKind, Ranked, Values,
 };
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Builder<'_> {
@@ -98,18 +96,14 @@ impl Builder<'_> {
         }
         let mut ends = list.into_iter();
         let (Some(from), Some(to)) = (ends.next(), ends.next()) else {
-            let error = Diagnostic::error(
-                code::UNEXPECTED,
-                name.span,
-                format!("no value of `{}` is listed", name.name),
-            );
-            self.say(error.hint("write values or a range: `1, 2, 4` or `1 .. 3 by 0.5`"));
+            self.say(error!(E0101, name.span, "no value of `{}` is listed", name.name;
+                hint: "write values or a range: `1, 2, 4` or `1 .. 3 by 0.5`"));
             return None;
         };
         let Some(by) = ends.next() else {
             let place = from.span.to(to.span);
-            let error = Diagnostic::error(code::UNEXPECTED, place, "the range has no step");
-            self.say(error.hint(format!("write it before the measure: `{text} by … by P(…)`")));
+            self.say(error!(E0101, place, "the range has no step";
+                hint: "write it before the measure: `{text} by … by P(…)`"));
             return None;
         };
         Some(Values::Range { from, to, by, log })
@@ -121,10 +115,8 @@ impl Builder<'_> {
         if let Some(second) = measures.get(1)
             && let MeasureKind::Quantile(level) = &second.kind
         {
-            self.say(
-                Diagnostic::error(code::SEVERAL_LEVELS, level.span, "only one level is allowed here")
-                    .hint("several quantiles can only be estimated: `estimate Q(0.5, 0.9, …)`"),
-            );
+            self.say(error!(E0124, level.span, "only one level is allowed here";
+                    hint: "several quantiles can only be estimated: `estimate Q(0.5, 0.9, …)`"));
             return None;
         }
         measures.pop()
@@ -207,10 +199,7 @@ impl Builder<'_> {
             };
             if twice {
                 let word = self.source.slice(span).split_whitespace().next().unwrap_or("").to_owned();
-                self.say(
-                    Diagnostic::error(code::TWICE, span, format!("`{word}` is repeated"))
-                        .hint("remove one of them"),
-                );
+                self.say(error!(E0111, span, "`{word}` is repeated"; hint: "remove one of them"));
             }
         }
         Some(clauses)

@@ -1,10 +1,10 @@
 //! Numbers and units.
 
 use super::builder::{Builder, Pair};
-use super::code;
 use super::grammar::Rule;
 use crate::base::decimal::Decimal;
 use crate::syntax::ast::{Ident, Quantity, UnitExpr, UnitFactor};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -79,10 +79,10 @@ impl Builder<'_> {
         if let Some(UnitExpr { factors, span }) = &unit
             && let [UnitFactor { name: Ident { name, .. }, power: 1 }] = factors.as_slice()
             && self.names_a_number(name)
-            && !self.diagnostics.iter().any(|one| one.code == code::NAME_IS_UNIT)
+            && !self.diagnostics.iter().any(|one| one.code == Code::W0103)
         {
             let title = format!("`{name}` is read as the unit, but is also a name");
-            let warning = Diagnostic::warning(code::NAME_IS_UNIT, *span, title);
+            let warning = Diagnostic::warning(Code::W0103, *span, title);
             self.say(warning.hint(format!("choose another name; for a product write `2 * {name}`")));
         }
         Some(Quantity { value: value?, unit })
@@ -113,10 +113,8 @@ impl Builder<'_> {
     }
 
     fn number_too_long(&mut self, span: Span) {
-        self.say(
-            Diagnostic::error(code::NUMBER, span, "the number has too many digits")
-                .hint("a number can have about 37 digits, including decimals and exponent"),
-        );
+        self.say(error!(E0110, span, "the number has too many digits";
+                hint: "a number can have about 37 digits, including decimals and exponent"));
     }
 
     /// `kg/(m s)`, of a quantity or a point.
@@ -143,7 +141,7 @@ impl Builder<'_> {
         let (name, power) = pair.as_str().split_once('^').unwrap_or((pair.as_str(), "1"));
         let Some(power) = power.parse::<i8>().ok() else {
             let span = self.span(pair);
-            self.say(Diagnostic::error(code::NUMBER, span, "the power of the unit is too large"));
+            self.say(error!(E0110, span, "the power of the unit is too large"));
             return None;
         };
         let span = self.at(start..start + name.len());
@@ -160,7 +158,7 @@ mod tests {
     #[test]
     fn a_name_that_is_a_unit_is_told_only_behind_a_number() {
         let source = |text: &str| Source::new(SourceId(0), "a", text);
-        let count = |said: &[Diagnostic]| said.iter().filter(|one| one.code == code::NAME_IS_UNIT).count();
+        let count = |said: &[Diagnostic]| said.iter().filter(|one| one.code == Code::W0103).count();
         for (wanted, text) in [
             (0, "check P(F<=9 s (count(s in sensor: s.works) >= 3)) >= 0.9"),
             (0, "property a = F<=9 s (forall m in all: speed(m) < 2 m/s) & distance(a, b) > 2 m"),

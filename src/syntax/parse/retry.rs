@@ -2,7 +2,6 @@
 //! could not be read before can be.
 
 use super::builder::Builder;
-use super::code;
 use super::fault::{Fault, failure};
 use super::grammar::Rule;
 use super::{layout, lexeme, nesting, nouns, quantity};
@@ -46,7 +45,7 @@ impl Builder<'_> {
             }
             let mark = |at: usize| self.at(at..at + 1);
             let close = nesting::partner(bracket);
-            let error = Diagnostic::error(code::UNCLOSED, mark(at), format!("`{bracket}` is not closed"))
+            let error = error!(E0102, mark(at), "`{bracket}` is not closed")
                 .related(self.place(fault.at, fault.found), format!("expected `{close}` before this text"));
             let others = open.iter().rev().skip(1).take(count - 1);
             return Some(others.fold(error, |error, (at, _)| error.related(mark(*at), "also not closed")));
@@ -81,7 +80,7 @@ impl Builder<'_> {
             }
         })?;
         let title = format!("expected `{meant}`, found `{word}`");
-        let error = Diagnostic::error(code::UNEXPECTED, self.at(at..at + word.len()), title);
+        let error = error!(E0101, self.at(at..at + word.len()), "{title}");
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
 
@@ -146,7 +145,7 @@ fn opener(word: &str) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::syntax::codes::Code;
     use crate::syntax::parse::parse_properties;
     use crate::syntax::source::{Source, SourceId};
 
@@ -158,10 +157,10 @@ mod tests {
             said.into_iter().map(|one| one.code).collect::<Vec<_>>()
         };
         let sum = "1 + ".repeat(1000);
-        assert_eq!(codes("2 >= 0.5"), [code::UNCLOSED]);
-        assert_eq!(codes("2)) >= 0.5"), [code::UNEXPECTED]);
-        assert_eq!(codes(&format!("{sum}2)) >= 0.5")), [code::UNEXPECTED]);
+        assert_eq!(codes("2 >= 0.5"), [Code::E0102]);
+        assert_eq!(codes("2)) >= 0.5"), [Code::E0101]);
+        assert_eq!(codes(&format!("{sum}2)) >= 0.5")), [Code::E0101]);
         // A declaration says nothing in a comment.
-        assert_eq!(codes("/* 1\nlet it be */ 2)) >= 0.5"), [code::UNEXPECTED]);
+        assert_eq!(codes("/* 1\nlet it be */ 2)) >= 0.5"), [Code::E0101]);
     }
 }

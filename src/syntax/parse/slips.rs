@@ -1,7 +1,6 @@
 //! Common slips, each with its own words.
 
 use super::builder::{Builder, Pair};
-use super::code;
 use super::fault::Fault;
 use super::grammar::Rule;
 use super::{lexeme, nouns};
@@ -34,10 +33,8 @@ impl Builder<'_> {
     fn slip_in_text(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let place = self.place(fault.at, fault.found);
         if lexeme::is_open_text(fault.found) {
-            return Some(
-                Diagnostic::error(code::TEXT, place, "the quoted text does not end on its line")
-                    .hint("close it with `\"`; a quote inside is written `\\\"`"),
-            );
+            return Some(error!(E0105, place, "the quoted text does not end on its line";
+                    hint: "close it with `\"`; a quote inside is written `\\\"`"));
         }
         // `3 % 2`, but not a number where the next line starts.
         let before = self.text[..fault.at].trim_end_matches(' ');
@@ -58,10 +55,7 @@ impl Builder<'_> {
             }
             _ => return None,
         };
-        Some(
-            Diagnostic::error(code::CHARACTER, place, format!("unexpected {}", self.quote(fault.found)))
-                .hint(format!("write `{plain}`")),
-        )
+        Some(error!(E0121, place, "unexpected {}", self.quote(fault.found); hint: "write `{plain}`"))
     }
 
     /// `speed == 1 m/s` where a field is set: the grammar takes it as it is meant.
@@ -80,12 +74,11 @@ impl Builder<'_> {
                 "=>" => "write `>=`; `=>` is an implication",
                 _ => "a test can only decide on which side of a number a probability is",
             };
-            return Some(Diagnostic::error(code::EQUALS, place, title).hint(hint));
+            return Some(error!(E0112, place, "{title}"; hint: "{hint}"));
         }
         if fault.found == ":=" && !fault.expected.contains(&Rule::t_assign) {
             return Some(
-                Diagnostic::error(code::EQUALS, place, "`:=` is not an operator")
-                    .hint("`=` sets a value, `==` compares"),
+                error!(E0112, place, "`:=` is not an operator"; hint: "`=` sets a value, `==` compares"),
             );
         }
         if matches!(fault.found, "==" | ":=" | "===")
@@ -93,7 +86,7 @@ impl Builder<'_> {
             && let Some(wanted) = unsigned(word)
         {
             let title = format!("expected {wanted}, found `{}`", fault.found);
-            return Some(Diagnostic::error(code::UNEXPECTED, place, title));
+            return Some(error!(E0101, place, "{title}"));
         }
         if fault.found == "==="
             || matches!(fault.found, "==" | ":=") && fault.expected.contains(&Rule::t_assign)
@@ -108,29 +101,19 @@ impl Builder<'_> {
             && self.text[..start].trim_end_matches(' ').ends_with('\n')
         {
             let place = self.at(start..start + word.len());
-            return Some(
-                Diagnostic::error(
-                    code::UNEXPECTED,
-                    place,
-                    format!("expected a number, a name or `(`, found `{word} =`"),
-                )
-                .hint("the value before it is missing or ends in an operator"),
-            );
+            return Some(error!(E0101, place, "expected a number, a name or `(`, found `{word} =`";
+                    hint: "the value before it is missing or ends in an operator"));
         }
         if let Some((start, word)) = lexeme::word_before(&self.text, fault.at)
             && let Some((_, word)) = word.rsplit_once('.')
             && self.follows_arrow(start)
         {
-            let error =
-                Diagnostic::error(code::UNEXPECTED, place, "a process can set only its own variables");
+            let error = error!(E0101, place, "a process can set only its own variables");
             return Some(error.hint(format!(
                 "set `{word}` in the process that declares it, in a command that reads this process"
             )));
         }
-        Some(
-            Diagnostic::error(code::EQUALS, place, "expected an operator, found `=`")
-                .hint("`=` sets a value, `==` compares"),
-        )
+        Some(error!(E0112, place, "expected an operator, found `=`"; hint: "`=` sets a value, `==` compares"))
     }
 
     /// `const = 3`: a declaration without its name may read as a setting.
@@ -141,7 +124,7 @@ impl Builder<'_> {
         let wanted = unsigned(word).filter(|_| is_set && !self.in_properties)?;
         let at = self.text.len() - rest.len();
         let title = format!("expected {wanted}, found `=`");
-        Some(Diagnostic::error(code::UNEXPECTED, self.at(at..at + 1), title))
+        Some(error!(E0101, self.at(at..at + 1), "{title}"))
     }
 
     /// `horizon = 5.`
@@ -155,7 +138,7 @@ impl Builder<'_> {
             return None;
         }
         let place = self.at(number.len()..before.len());
-        let error = Diagnostic::error(code::UNEXPECTED, place, "a number cannot end in a point");
+        let error = error!(E0101, place, "a number cannot end in a point");
         Some(error.hint(format!("write `{written}`, or `{written}.0`")))
     }
 
@@ -165,8 +148,7 @@ impl Builder<'_> {
         if word != "if" || !fault.after_value() {
             return None;
         }
-        let error =
-            Diagnostic::error(code::OPERATOR, self.at(at..at + 2), "`if` must be written as a function");
+        let error = error!(E0114, self.at(at..at + 2), "`if` must be written as a function");
         Some(error.hint("write `if(condition, then, otherwise)`; for formulas `(a => b) & (!a => c)`"))
     }
 
@@ -176,7 +158,7 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let error = Diagnostic::error(code::UNEXPECTED, place, "a range must follow its metric");
+        let error = error!(E0101, place, "a range must follow its metric");
         Some(error.hint("write for example `check E(m) in 0 .. 2 >= 1.5`; a probability has no range"))
     }
 
@@ -190,7 +172,7 @@ impl Builder<'_> {
         let (at, word) = lexeme::word_before(&self.text, fault.at)?;
         let meant = nouns::nearest(word, ["forall", "exists"].into_iter())?;
         let place = self.at(at..at + word.len());
-        let error = Diagnostic::error(code::UNEXPECTED, place, format!("unknown quantifier `{word}`"));
+        let error = error!(E0101, place, "unknown quantifier `{word}`");
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
 
@@ -215,7 +197,7 @@ impl Builder<'_> {
         let set = compared.rsplit_once("under").map(|(_, set)| lexeme::first(set.trim_start()));
         let name = set.filter(|name| name.starts_with(lexeme::starts_name)).unwrap_or("n");
         let title = format!("expected `{lacks}`, found {}", self.quote(fault.found));
-        let error = Diagnostic::error(code::UNEXPECTED, self.place(fault.at, fault.found), title);
+        let error = error!(E0101, self.place(fault.at, fault.found), "{title}");
         Some(error.hint(format!("write two sides: `compare P(…) under {name} = … with {name} = …`")))
     }
 
@@ -225,11 +207,7 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let error = Diagnostic::error(
-            code::UNEXPECTED,
-            place,
-            "`with` is allowed only between the sides of a `compare`",
-        );
+        let error = error!(E0101, place, "`with` is allowed only between the sides of a `compare`");
         Some(error.hint("to set parameters of a query write `under n = …`"))
     }
 
@@ -265,7 +243,7 @@ impl Builder<'_> {
         } else {
             "write `,`"
         };
-        Some(Diagnostic::error(code::OPERATOR, self.at(at..at + joined.len()), title).hint(hint))
+        Some(error!(E0114, self.at(at..at + joined.len()), "{title}"; hint: "{hint}"))
     }
 
     /// `process p { n = 3 }`
@@ -282,26 +260,23 @@ impl Builder<'_> {
         }
         let place = self.place(fault.at, fault.found);
         if self.follows_arrow(fault.at) {
-            let error = Diagnostic::error(code::UNEXPECTED, place, "several updates need braces");
+            let error = error!(E0101, place, "several updates need braces");
             return Some(error.hint("write for example `-> { a = 1; b = 2 }`"));
         }
-        Some(
-            Diagnostic::error(code::FIELD_PLACE, place, "a process has no fields")
-                .hint(format!("write `var {} = …` or `let {} = …`", fault.found, fault.found)),
-        )
+        Some(error!(E0118, place, "a process has no fields";
+                hint: "write `var {} = …` or `let {} = …`", fault.found, fault.found))
     }
 }
 
 /// `n % 2`
 fn percent(place: Span) -> Diagnostic {
-    Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, not an operator")
-        .hint("for a remainder write `modulo(n, 2)`; for a percentage write `95 %`")
+    error!(E0121, place, "`%` is the unit percent, not an operator";
+        hint: "for a remainder write `modulo(n, 2)`; for a percentage write `95 %`")
 }
 
 /// One sign of equality for another.
 fn unequal(place: Span, wanted: &str, found: &str) -> Diagnostic {
-    Diagnostic::error(code::EQUALS, place, format!("expected `{wanted}`, found `{found}`"))
-        .hint("`=` sets a value, `==` compares")
+    error!(E0112, place, "expected `{wanted}`, found `{found}`"; hint: "`=` sets a value, `==` compares")
 }
 
 /// What is wanted after a word that is followed by no sign of equality.

@@ -2,7 +2,6 @@
 
 use super::bounds::OPERATORS;
 use super::builder::Builder;
-use super::code;
 use super::fault::Fault;
 use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
@@ -29,8 +28,7 @@ impl Builder<'_> {
             return None;
         }
         let (unit, _) = quantity::time_meant(word)?;
-        let error =
-            Diagnostic::error(code::UNIT, self.at(at..at + word.len()), format!("unknown unit `{word}`"));
+        let error = error!(E0113, self.at(at..at + word.len()), "unknown unit `{word}`");
         Some(error.hint(format!("did you mean `{number} {unit}`?")))
     }
 
@@ -62,7 +60,7 @@ impl Builder<'_> {
         let value = lexeme::first(self.behind(fault));
         let is_value = value.starts_with(lexeme::continues_name);
         let title = format!("expected `=`, found `{}`", fault.found);
-        let error = Diagnostic::error(code::UNEXPECTED, self.place(fault.at, fault.found), title);
+        let error = error!(E0101, self.place(fault.at, fault.found), "{title}");
         Some(error.hint(if is_value { format!("write `= {value}`") } else { "write `=`".to_owned() }))
     }
 
@@ -82,8 +80,7 @@ impl Builder<'_> {
             };
             if after_number && is_unit() {
                 let place = self.at(at..at + token.len());
-                let error =
-                    Diagnostic::error(code::UNIT, place, "a range of whole numbers cannot have units");
+                let error = error!(E0113, place, "a range of whole numbers cannot have units");
                 return Some(
                     error.hint(format!("remove the units, or declare a real number: `var {name}: real = …`")),
                 );
@@ -111,10 +108,8 @@ impl Builder<'_> {
         {
             let place = self.place(fault.at, fault.found);
             let title = format!("unexpected `{}` after `{number} {before_it}`", fault.found);
-            return Some(
-                Diagnostic::error(code::UNIT, place, title)
-                    .hint(format!("write a product of units as `{number} {before_it}*{}`", fault.found)),
-            );
+            return Some(error!(E0113, place, "{title}";
+                    hint: "write a product of units as `{number} {before_it}*{}`", fault.found));
         }
         let before = &self.text[..fault.at];
         let between = &before[before.trim_end().len()..];
@@ -128,11 +123,7 @@ impl Builder<'_> {
         if quantity::UNITS.contains(&fault.found) && rest.starts_with('=') && !rest.starts_with("==") {
             // A name that is set is no unit, so that the grammar stopped before it.
             let at = self.text.len() - rest.len();
-            let said = Diagnostic::error(
-                code::UNEXPECTED,
-                self.at(at..at + 1),
-                format!("unexpected `=` after `{number} {}`", fault.found),
-            );
+            let said = error!(E0101, self.at(at..at + 1), "unexpected `=` after `{number} {}`", fault.found);
             return Some(said.hint("`=` sets a value, `==` compares"));
         }
         let unit = quantity::nearest_unit(fault.found);
@@ -152,8 +143,7 @@ impl Builder<'_> {
         let place = self.place(fault.at, fault.found);
         let argues = rest.starts_with('(') || rest.starts_with('=') && !rest.starts_with("==");
         if argues && fault.expected.contains(&Rule::t_comma) {
-            let error =
-                Diagnostic::error(code::UNEXPECTED, place, format!("expected `,`, found `{}`", fault.found));
+            let error = error!(E0101, place, "expected `,`, found `{}`", fault.found);
             return Some(error.hint(format!("write `{number}, {}`", fault.found)));
         }
         let hint = match unit {
@@ -164,7 +154,7 @@ impl Builder<'_> {
                 fault.found
             ),
         };
-        Some(Diagnostic::error(code::UNIT, place, format!("unknown unit `{}`", fault.found)).hint(hint))
+        Some(error!(E0113, place, "unknown unit `{}`", fault.found; hint: "{hint}"))
     }
 
     /// `5 kg/(m sec)`: a name among the units in parentheses.
@@ -183,7 +173,7 @@ impl Builder<'_> {
         let (unit, _) = quantity::unit_meant(word).filter(|_| !self.declared().contains_key(word))?;
         let start = open + 1 + factors.find(word)?;
         let place = self.at(start..start + word.len());
-        let error = Diagnostic::error(code::UNIT, place, format!("unknown unit `{word}`"));
+        let error = error!(E0113, place, "unknown unit `{word}`");
         Some(error.hint(format!("did you mean `{unit}`?")))
     }
 }
