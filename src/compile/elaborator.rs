@@ -183,8 +183,6 @@ pub(super) struct Elaborator<'a> {
     pub(super) frame: Option<Arc<Frame>>,
     /// Where the name of a bare number stands, and where that is declared.
     pub(super) bare: BTreeMap<Span, Span>,
-    /// For each file, an exponent that depends on parameters: so does the unit of its power.
-    pub(super) exponents: BTreeMap<SourceId, Span>,
     /// How often an unknown name was come upon.
     pub(super) unknowns: u64,
     /// Whether the body of a function is looked at, whatever it is called with.
@@ -275,7 +273,6 @@ impl<'a> Elaborator<'a> {
             uses: Uses::default(),
             frame: None,
             bare: BTreeMap::new(),
-            exponents: BTreeMap::new(),
             unknowns: 0,
             looking: false,
             followed: BTreeSet::new(),
@@ -303,20 +300,13 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Notes an error or warning, each place once.
-    pub(super) fn note(&mut self, mut diagnostic: Diagnostic) {
+    pub(super) fn note(&mut self, diagnostic: Diagnostic) {
         if self.told < Told::needed(diagnostic.code) {
             return;
         }
         let place = diagnostic.place.as_ref().map(|place| (place.span.source, place.span.start));
         if place.is_some_and(|place| self.unread.contains(&place)) {
             return;
-        }
-        if [Code::E0302, Code::E0303].contains(&diagnostic.code)
-            && let Some(place) = &diagnostic.place
-        {
-            // A file knows its own names and those of the scenario.
-            let files = [place.span.source, SourceId(0)];
-            diagnostic.hangs_on.extend(files.iter().find_map(|file| self.exponents.get(file)));
         }
         if self.is_astray && diagnostic.severity == Severity::Error && !self.is_sure(&diagnostic) {
             return;

@@ -192,7 +192,7 @@ impl Elaborator<'_> {
             if dimension.is_none() {
                 return Ok(dimension);
             }
-            this.note_exponent(right);
+            this.fixed_exponent(right, dimension)?;
             match whole {
                 Some(n) => match dimension.power(n) {
                     Some(d) => Ok(d),
@@ -238,20 +238,24 @@ impl Elaborator<'_> {
 }
 
 impl Elaborator<'_> {
-    /// Notes an exponent that depends on parameters, directly or by the arguments of a function.
-    fn note_exponent(&mut self, exponent: &Expr) {
+    /// Refuses an exponent of a quantity with a unit that depends on parameters, directly or by the arguments of a
+    /// function: so would the unit of the power.
+    fn fixed_exponent(&mut self, exponent: &Expr, dimension: Dimension) -> Lowered<()> {
         let place = exponent.span;
-        if matches!(exponent.kind, ExprKind::Quantity(_)) || self.exponents.contains_key(&place.source) {
-            return;
+        if matches!(exponent.kind, ExprKind::Quantity(_)) {
+            return Ok(());
         }
         let inside = |used: &Span| place.start <= used.start && used.end <= place.end;
         let from = self.aliases.range(Span { end: 0, ..place }..);
         let used = from.take_while(|(used, _)| used.source == place.source && used.start < place.end);
         let meant = used.filter(|(used, _)| inside(used)).map(|(_, meant)| *meant);
-        let hangs = std::iter::once(place).chain(meant).find(|place| self.hangs_on_parameters(*place));
-        if let Some(hangs) = hangs {
-            self.exponents.insert(place.source, hangs);
+        if std::iter::once(place).chain(meant).any(|place| self.hangs_on_parameters(place)) {
+            return self.report(
+                error!(E0303, place, "the exponent of {} cannot depend on a parameter", describe(dimension);
+                hint: "the unit of the power would depend on it: write a number"),
+            );
         }
+        Ok(())
     }
 }
 
