@@ -10,7 +10,7 @@ use super::study::{Ask, Measure, MeasureKind, Target};
 use super::symbols::ScopeId;
 use crate::stats::procedures::MEAN_RUNNING;
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{About, Diagnostic};
 
 impl<'a> Compiler<'a> {
     /// A check: its claim, threshold and test.
@@ -91,6 +91,7 @@ impl<'a> Compiler<'a> {
             if let Some(common) = clauses.under.iter().find(|common| common.name.name == binding.name.name) {
                 let text = format!("`{}` is set twice", binding.name.name);
                 let error = error!(E0210, binding.name.span, "{text}")
+                    .about(About::Name(binding.name.name.clone()))
                     .related(common.name.span, "set here for both sides")
                     .hint("remove one of them");
                 self.sites[site].elaborator.note(error);

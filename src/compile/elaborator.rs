@@ -25,7 +25,7 @@ use crate::logic::Tree;
 use crate::model::{AgentId, BehaviourId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::diagnostic::{About, Diagnostic, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -376,10 +376,12 @@ impl<'a> Elaborator<'a> {
         if let Some(number) = single_number(&text).filter(|_| !found.is_none() && !expected.is_none()) {
             error = error.hint(format!("write `{number} {expected}`"));
         }
-        if found.is_none() && !expected.is_none() {
+        let is_bare = found.is_none() && !expected.is_none();
+        if is_bare {
             error.comes_of = self.bare_within(span);
         }
-        error
+        let in_steps = [expected, found].contains(&Dimension::STEPS);
+        error.about(About::Unit { wanted: describe(expected), is_bare, in_steps })
     }
 
     /// Where the bare number is declared that is named within a place, if there is just one.

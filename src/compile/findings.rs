@@ -1,12 +1,12 @@
 //! What was found in the worlds of a call: each place says the same thing once.
 
-use super::consequences::{CIRCULAR, UNKNOWN, words};
+use super::consequences::{UNKNOWN, words};
 use super::dimension;
 use super::elaborator::Elaborator;
 use super::queries::Compiler;
 use super::symbols::Meaning;
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::diagnostic::{About, Diagnostic, Severity};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -162,7 +162,7 @@ impl Elaborator<'_> {
         if one.is_formal {
             return true;
         }
-        let is_circle = one.code == Code::E0205 && one.title.ends_with(CIRCULAR);
+        let is_circle = one.code == Code::E0205 && one.about == About::Circle;
         if is_circle || UNKNOWN.contains(&one.code) || one.code.is_of("E03") || VALUELESS.contains(&one.code)
         {
             return true;

@@ -9,6 +9,7 @@ use crate::model::stepper::{stature, stepped_default};
 use crate::model::{self, Body, GaitRule, Law, Parameter, Planner, SearchRule, Stepper};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -113,7 +114,9 @@ impl Elaborator<'_> {
                 return Err(Reported);
             }
             self.circles.extend(self.expanding.iter().map(|(_, n)| n.clone()));
-            return self.report(error!(E0205, name.span, "the kind `{}` depends on itself", name.name));
+            return self.report(
+                error!(E0205, name.span, "the kind `{}` depends on itself", name.name).about(About::Circle),
+            );
         }
         if let Some(known) = self.kinds.get(&name.name) {
             return known.clone();

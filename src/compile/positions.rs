@@ -9,6 +9,7 @@ use super::typed::Typed;
 use crate::base::geometry::Vec2;
 use crate::model::{Position, Start, TOP_SPEED, Who};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Value};
+use crate::syntax::diagnostic::About;
 
 impl Elaborator<'_> {
     pub(super) fn start(
@@ -21,8 +22,11 @@ impl Elaborator<'_> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
             Some(field) if self.misread_placement(&field.value) => Err(Reported),
             Some(field) => self.position(name, &field.value, people),
-            None if required => self.report(error!(E0209, name.span, "`{}` has no `at`", name.name;
-                    hint: "write `at = ` with a point, `uniform in` a shape, or `near` another agent")),
+            None if required => self.report(
+                error!(E0209, name.span, "`{}` has no `at`", name.name;
+                    hint: "write `at = ` with a point, `uniform in` a shape, or `near` another agent")
+                .about(About::Start),
+            ),
             None => Err(Reported),
         };
         let velocity = match fields.iter().find(|f| f.name.name == "velocity").map(|f| &f.value) {

@@ -1,7 +1,6 @@
 //! Rankings: their options, each of which is a world and perhaps a move in it, their score and their procedure.
 
 use super::asks::unlike;
-use super::consequences::IDLE;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
 use super::measures::{Observed, Sketch, What};
@@ -16,6 +15,7 @@ use crate::model::{AgentId, Bool, Move, Num, Who};
 use crate::stats::ranking::Ranking;
 use crate::stats::spec::Make;
 use crate::syntax::ast::{self, Clauses, Expr, Ident, Ranked, Values};
+use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 
@@ -230,8 +230,8 @@ impl<'a> Compiler<'a> {
                 }
             }
             if !differs {
-                let said = format!("the values of `{}` {IDLE}", name.name);
-                let error = error!(E0606, name.span, "{said}");
+                let said = format!("the values of `{}` make no difference", name.name);
+                let error = error!(E0606, name.span, "{said}").about(About::Idle);
                 return self.sites[site].elaborator.report(
                     error.hint(
                         "rank a parameter on which the scenario or the measure depends for these values",
@@ -310,6 +310,7 @@ impl Elaborator<'_> {
         };
         let what = if paths { "paths" } else { "moves" };
         let said = format!("the scenario declares no {what} for `{name}`");
-        self.report(error!(E0606, at, "{said}"; hint: "{hint}"))
+        let about = if paths { About::Other } else { About::Moves };
+        self.report(error!(E0606, at, "{said}"; hint: "{hint}").about(about))
     }
 }

@@ -13,6 +13,7 @@ use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 
 impl<'a> Elaborator<'a> {
@@ -123,7 +124,7 @@ impl<'a> Elaborator<'a> {
             return self.report(error!(E0205, span, "the region `{name}` is not declared yet"));
         };
         if self.expanding.iter().any(|(_, n)| *n == name) {
-            return self.report(error!(E0205, span, "`{name}` depends on itself"));
+            return self.report(error!(E0205, span, "`{name}` depends on itself").about(About::Circle));
         }
         self.expand_further(span)?;
         self.expanding.push((0, name));
@@ -170,7 +171,7 @@ impl<'a> Elaborator<'a> {
         {
             let name = &function.name;
             return self.report(error!(E0203, function.span, "unknown function `{name}`";
-                hint: "write `:` after a name: `wall {name}: {}`", self.text(Span { start: function.span.end, ..point.span },)));
+                hint: "write `:` after a name: `wall {name}: {}`", self.text(Span { start: function.span.end, ..point.span })).about(About::Name(name.clone())));
         }
         self.corner(point)
     }

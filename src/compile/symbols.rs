@@ -4,7 +4,7 @@ use super::nearest::nearest;
 use crate::model::{AgentId, BarrierId, BehaviourId, LineId, RegionId};
 use crate::syntax::ast::{Expr, Ident, KindDecl, LetDecl, ShapeExpr};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{About, Diagnostic};
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -168,6 +168,7 @@ pub(super) fn unknown<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
     let error = Diagnostic::error(code, span, format!("unknown {what} `{name}`"));
+    let error = error.about(About::Name(name.to_owned()));
     let known: Vec<&str> = known.collect();
     let spoken = SPOKEN.iter().find(|(theirs, ours)| theirs.contains(&name) && known.contains(ours));
     match spoken.map(|(_, ours)| *ours).or_else(|| nearest(name, known.into_iter())) {

@@ -15,7 +15,7 @@ use crate::base::tick::{Clock, Tick};
 use crate::model::{BehaviourId, BuiltIn, Kind, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{About, Diagnostic};
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
 
@@ -373,8 +373,11 @@ impl<'a> Elaborator<'a> {
             let names: Vec<&str> = missing.iter().map(|(name, _)| *name).collect();
             let lines: Vec<String> =
                 missing.iter().map(|(name, value)| format!("`{name} = {value}`")).collect();
-            self.note(error!(E0505, place, "the scenario has no {}", names.join(" and no ");
-                hint: "write {}", lines.join(" and ")));
+            self.note(
+                error!(E0505, place, "the scenario has no {}", names.join(" and no ");
+                hint: "write {}", lines.join(" and "))
+                .about(About::Clock),
+            );
             failed = true;
         }
         if free {

@@ -10,7 +10,7 @@ use crate::engine::overfull_starts;
 use crate::gait::model::{FIT_AGAIN, LearnedGait};
 use crate::syntax::ast::{Expr, Item, PropertyFile, PropertyItem, ScenarioFile, Values};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::diagnostic::{About, Diagnostic, Severity};
 use crate::syntax::parse::{
     continues_name, decode, parse_properties, parse_properties_of, parse_scenario, parse_value, split_values,
 };
@@ -343,7 +343,11 @@ fn crowded(starts: &[Starts], known: &[Diagnostic]) -> Vec<Diagnostic> {
         known.iter().filter(|one| is_error(one)).filter_map(place).any(meets)
     };
     let found = overfull_starts(starts);
-    found.iter().map(refusal).filter(|one| !place(one).is_some_and(is_known)).collect()
+    found
+        .iter()
+        .map(|one| refusal(one).about(About::Crowd))
+        .filter(|one| !place(one).is_some_and(is_known))
+        .collect()
 }
 
 /// Whether any number of people may be another than the files say. What is wrong with a value that the call sets tells

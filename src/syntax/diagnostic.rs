@@ -37,6 +37,39 @@ pub struct Label {
     pub text: String,
 }
 
+/// What an error is about, where errors follow from one another.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum About {
+    /// None of these.
+    #[default]
+    Other,
+    /// A name: nothing has it, or it is set twice. At its other places the error is the same.
+    Name(String),
+    /// A definition that leads back to itself.
+    Circle,
+    /// Something whose number or value is not known where it is asked for.
+    Unsettled,
+    /// A value of another unit than the one wanted, which is described.
+    Unit {
+        /// `a speed (m/s)`
+        wanted: String,
+        /// Whether the value has no unit.
+        is_bare: bool,
+        /// Whether one of the two is a number of steps.
+        in_steps: bool,
+    },
+    /// A horizon or step that nothing sets.
+    Clock,
+    /// An agent without a start.
+    Start,
+    /// An agent without moves.
+    Moves,
+    /// More people than there is room for.
+    Crowd,
+    /// Values of a parameter that make no difference.
+    Idle,
+}
+
 /// One error or warning. One sentence, lower case, no full stop; the remedy in the hint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -56,6 +89,8 @@ pub struct Diagnostic {
     pub hangs_on: Vec<Span>,
     /// Whether it depends on no value at its place: an argument may be missing.
     pub is_formal: bool,
+    /// What it is about.
+    pub about: About,
     /// The declaration of a number without a unit that causes it.
     pub comes_of: Option<Span>,
 }
@@ -82,6 +117,7 @@ impl Diagnostic {
             hint: None,
             hangs_on: Vec::new(),
             is_formal: false,
+            about: About::Other,
             comes_of: None,
         }
     }
@@ -97,6 +133,13 @@ impl Diagnostic {
     #[must_use]
     pub fn formal(mut self) -> Self {
         self.is_formal = true;
+        self
+    }
+
+    /// Says what it is about.
+    #[must_use]
+    pub fn about(mut self, about: About) -> Self {
+        self.about = about;
         self
     }
 

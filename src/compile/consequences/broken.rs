@@ -1,11 +1,11 @@
 //! What could not be read, and which errors come of it.
 
-use super::{CIRCULAR, DIMENSION, EARLY, LACKING, bare, block_end, leading_word, word, words};
+use super::{DIMENSION, LACKING, bare, block_end, leading_word, word, words};
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
 use crate::syntax::ast::{self, Item};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::diagnostic::{About, Diagnostic, Severity};
 use crate::syntax::keywords::{Declares, KEYWORDS, Place, keyword};
 use crate::syntax::parse::starts_name;
 use crate::syntax::source::{Source, SourceId, Span};
@@ -26,8 +26,6 @@ const NO_OPTIONS: Code = Code::E0406;
 const NO_MOVES: Code = Code::E0606;
 /// Codes of agents that start inside an obstacle, or where there is no room.
 const INSIDE: [Code; 2] = [Code::E0409, Code::E0801];
-/// Part of the title of an error about too many agents for a place.
-const CROWDED: &str = " cannot be placed: ";
 /// Words that decide the clock.
 const TIMES: [&str; 6] = ["after", "at", "horizon", "process", "step", "when"];
 /// Most broken items before a place that may reach up to it.
@@ -194,22 +192,23 @@ impl<'i> Broken<'i> {
         let text = word(self.sources, place).unwrap_or_default();
         let of_clock = self.clock
             && (CLOCKS.contains(&one.code)
-                || one.code == DIMENSION && (one.title.contains("(steps)") || self.times.contains(&place)));
+                || matches!(one.about, About::Unit { in_steps: true, .. })
+                || one.code == DIMENSION && self.times.contains(&place));
         let of_options = one.code == NO_OPTIONS && self.meets(place);
-        let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
+        let of_moves = one.about == About::Moves && self.moves;
         // With barriers that were not read there is less room for many, not more.
-        let is_crowd = one.title.contains(CROWDED);
+        let is_crowd = one.about == About::Crowd;
         let of_scenery = INSIDE.contains(&one.code) && self.scenery && !is_crowd;
         // The room that bodies need is unknown if a part of them was not read.
         let of_bodies = is_crowd && scenario && (self.fields || self.any_name);
         // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.
-        let alone = one.title.ends_with(CIRCULAR)
+        let alone = one.about == About::Circle
             || one.code == NO_MOVES && !scenario
-            || one.code == LACKING && one.title.ends_with(" has no `at`") && !self.is_torn_behind(place)
+            || one.about == About::Start && !self.is_torn_behind(place)
             || one.code == LACKING && !self.any_name && (!self.fields || self.is_whole_kind(text))
             || one.code == SETTING
-                && (!one.title.contains("has no") || !self.settings && !self.any_name && !self.clock)
-            || one.code == EARLY && one.title.ends_with("is not available here");
+                && (one.about != About::Clock || !self.settings && !self.any_name && !self.clock)
+            || one.about == About::Unsettled;
         let of_name = !alone
             && NAMES.contains(&one.code)
             && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));

@@ -10,7 +10,7 @@ use super::dimension;
 use super::queries::Input;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
+use crate::syntax::diagnostic::{About, Diagnostic, Label, Severity};
 use crate::syntax::parse::{continues_name, starts_name};
 use crate::syntax::source::{Source, SourceId, Span};
 use broken::Broken;
@@ -28,10 +28,6 @@ const UNKNOWN_UNIT: Code = Code::E0113;
 const DIMENSION: Code = Code::E0303;
 /// Code of a name that is used before it can be known.
 const EARLY: Code = Code::E0205;
-/// The end of the title of an error about a circular definition.
-pub(super) const CIRCULAR: &str = "depends on itself";
-/// The end of the title of an error about a ranked parameter that nothing uses.
-pub(super) const IDLE: &str = "make no difference";
 /// Codes of unknown names, reported once.
 pub(super) const UNKNOWN: [Code; 4] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210];
 /// Most further places that are marked.
@@ -42,7 +38,7 @@ pub fn own_errors(found: Vec<Diagnostic>, said: &[Diagnostic], input: &Input<'_>
     let broken = Broken::of(said, input);
     let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
     // Values surely make no difference only where nothing else is wrong.
-    let is_idle = |one: &&Diagnostic| one.title.ends_with(IDLE);
+    let is_idle = |one: &&Diagnostic| one.about == About::Idle;
     let is_torn = fails(said) || found.iter().any(|one| one.severity == Severity::Error && !is_idle(&one));
     let is_own = |one: &&Diagnostic| broken.is_own(one) && !(is_torn && is_idle(one));
     let own: Vec<Diagnostic> = found.iter().filter(is_own).cloned().collect();
@@ -85,7 +81,7 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         // It may stand in parentheses.
         let of_setting = || {
             let name = word(sources, span).map(|text| leading_word(bare(text)).0);
-            name.is_some_and(|name| settings.contains(name) && one.title.contains(&format!("`{name}`")))
+            name.is_some_and(|name| settings.contains(name) && is_about(one, name))
         };
         let misspelt = || {
             let source = sources.iter().find(|source| source.id == span.source);
@@ -105,7 +101,7 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         // Who could not be declared is not known yet, either.
         let early = broken
             && one.code == EARLY
-            && !one.title.ends_with(CIRCULAR)
+            && one.about != About::Circle
             && place(one).is_some_and(|span| span.source != SourceId(0));
         early || follows(one)
     };
@@ -190,7 +186,7 @@ fn blamed<'b, 'd>(
     declared: &'b [Bare<'b>],
     sources: &[Source],
 ) -> Option<(&'b Bare<'b>, &'d str, Span)> {
-    let wanted = one.title.strip_prefix("expected ")?.strip_suffix(", found a number without a unit")?;
+    let About::Unit { wanted, is_bare: true, .. } = &one.about else { return None };
     let place = one.place.as_ref().filter(|_| one.code == DIMENSION)?.span;
     // A call may make a pure number of anything.
     let comes_of = one.comes_of.filter(|_| word(sources, place).is_some_and(|text| !text.contains('(')))?;
@@ -207,7 +203,7 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
         let place = one.place.as_ref().filter(|_| UNKNOWN.contains(&one.code)).map(|place| place.span);
         let name = place.and_then(|span| Some((leading_word(bare(word(sources, span)?)).0, span)));
         // Of `--set` the value is the place.
-        let name = name.filter(|(name, _)| one.title.contains(&format!("`{name}`")));
+        let name = name.filter(|(name, _)| is_about(&one, name));
         if let Some((name, span)) = name.filter(|(name, _)| !name.is_empty()) {
             match first.entry(name) {
                 Entry::Occupied(before) => {
@@ -235,6 +231,11 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
         }
     }
     kept
+}
+
+/// Whether an error is about a name.
+fn is_about(one: &Diagnostic, name: &str) -> bool {
+    matches!(&one.about, About::Name(unknown) if unknown == name)
 }
 
 /// Where the first block of a text ends.
@@ -305,7 +306,7 @@ mod tests {
         let found = names.iter().map(|name| {
             let span = Span::new(SourceId(0), at, at + name.len());
             at += name.len() + 3;
-            error!(E0201, span, "unknown name `{name}`")
+            error!(E0201, span, "unknown name `{name}`").about(About::Name(name.clone()))
         });
         let told = once_a_name(less_what_follows(found.collect(), &sources), &sources);
         assert_eq!(told.len(), 15_000);

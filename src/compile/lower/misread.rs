@@ -9,6 +9,7 @@ use crate::base::tick::Clock;
 use crate::model::BuiltIn;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment, Value};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
 use crate::syntax::parse::{foreign_word, time_meant, unit_meant};
 use crate::syntax::source::Span;
 
@@ -129,7 +130,10 @@ impl Elaborator<'_> {
         if nearest(name, std::iter::once(PLACES)).is_none() || self.is_known(name, &locals) {
             return false;
         }
-        self.note(error!(E0201, word.span, "unknown name `{name}`"; hint: "did you mean `{PLACES}`?"));
+        self.note(
+            error!(E0201, word.span, "unknown name `{name}`"; hint: "did you mean `{PLACES}`?")
+                .about(About::Name(name.clone())),
+        );
         match (&shape.kind, value) {
             (ExprKind::Call { arguments, .. }, Value::Truncated { high, .. }) => {
                 let _ = self.lower_all(arguments.iter().chain([high]), &locals);

@@ -11,7 +11,7 @@ use super::{BUILT_IN, counted_arguments};
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Label;
+use crate::syntax::diagnostic::{About, Label};
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
@@ -128,8 +128,11 @@ impl<'a> Elaborator<'a> {
                 self.unknowns += 1;
                 Err(Reported)
             }
-            Meaning::Declared => self.report(error!(E0205, span, "`{name}` is not available here";
-                    hint: "numbers of agents and parameters cannot depend on agents")),
+            Meaning::Declared => self.report(
+                error!(E0205, span, "`{name}` is not available here";
+                    hint: "numbers of agents and parameters cannot depend on agents")
+                .about(About::Unsettled),
+            ),
             Meaning::Kind(_) | Meaning::Tracks(_) | Meaning::Behaviour(_) => {
                 self.report(error!(E0206, span, "`{name}` is {} and has no value", meaning.noun()))
             }
@@ -252,6 +255,7 @@ impl<'a> Elaborator<'a> {
                 .collect();
             self.circles.extend(way.iter().map(|n| (*n).to_owned()));
             let error = error!(E0205, span, "`{name}` depends on itself").label(way.join(" → "));
+            let error = error.about(About::Circle);
             return self.report(error);
         }
         self.expanding.push((scope, name.to_owned()));

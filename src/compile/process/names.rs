@@ -8,6 +8,7 @@ use crate::compile::wording::{Frame, Use};
 use crate::model::{Bool, Comparison, Domain, Function, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
@@ -76,7 +77,8 @@ impl<'a> Elaborator<'a> {
             Inside::Let(_) | Inside::Label(_) => "a name inside",
         };
         let label = format!("{what} `{}`, which has no value yet", process.decl.name.name);
-        let error = error!(E0201, span, "unknown name `{name}`").label(label);
+        let error =
+            error!(E0201, span, "unknown name `{name}`").label(label).about(About::Name(name.to_owned()));
         Some(self.report(error.hint("initial values cannot depend on the process")))
     }
 
@@ -107,8 +109,11 @@ impl<'a> Elaborator<'a> {
             return Ok(());
         }
         let text = format!("`{}` is not available here", self.text(span));
-        self.report(error!(E0205, span, "{text}";
-                hint: "numbers of copies and initial values cannot depend on processes"))
+        self.report(
+            error!(E0205, span, "{text}";
+                hint: "numbers of copies and initial values cannot depend on processes")
+            .about(About::Unsettled),
+        )
     }
 
     /// The names of the process around the present place.
