@@ -220,6 +220,11 @@ impl Recording {
     }
 
     fn seen(&self, person: &Person, frame: f64) -> Option<PersonState> {
+        // Few of hundreds are there at a time.
+        let ends = [person.samples.first()?, person.samples.last()?].map(|sample| f64::from(sample.frame));
+        if frame < ends[0] || frame > ends[1] {
+            return None;
+        }
         let after = person.samples.partition_point(|sample| f64::from(sample.frame) < frame);
         let next = person.samples.get(after)?;
         let state = |position, velocity: Option<Vec2>| PersonState {
