@@ -1,7 +1,7 @@
 //! Slips around operators that look ahead in time, and their bounds.
 
 use super::builder::Builder;
-use super::fault::Fault;
+use super::failure::Fault;
 use super::grammar::{Grammar, Rule};
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;

@@ -6,9 +6,9 @@
 //! the error. Only texts in which braces do not pair up are looked at: nothing depends on layout in those in which
 //! they do.
 
-use super::fault::{quote, starts_declaration};
 use super::layout::Token;
 use super::lexeme::starts_name;
+use super::nouns::{quote, starts_declaration};
 use crate::syntax::ast::Broken;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};

@@ -1,42 +1,11 @@
 //! From an item that its rule does not take to one diagnostic at the exact place: where the rule failed.
 
 use super::builder::Builder;
-use super::grammar::{Grammar, Rule};
-use super::{layout, lexeme, nesting, nouns, quantity};
+use super::failure::{Fault, failure, place_and_expected};
+use super::grammar::Rule;
+use super::{lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::keywords;
-use crate::syntax::source::Span;
-use pest::Parser;
-use pest::error::{ErrorVariant, InputLocation};
-
-/// The place in an item where its rule failed, with the rules expected there.
-pub(super) struct Fault<'t> {
-    /// Byte of the failure.
-    pub(super) at: usize,
-    /// The text found there; empty at the end of the file or line.
-    pub(super) found: &'t str,
-    /// The rules expected there.
-    pub(super) expected: Vec<Rule>,
-    /// The rule of the item.
-    pub(super) rule: Rule,
-}
-
-impl Fault<'_> {
-    /// Whether an operator could have stood there: the place is after a value.
-    pub(super) fn after_value(&self) -> bool {
-        self.expected.iter().any(|&rule| nouns::is_operator(rule))
-    }
-
-    /// Whether a clause of a query could have stood there.
-    pub(super) fn takes_clauses(&self) -> bool {
-        self.expected.iter().any(|rule| matches!(rule, Rule::clause | Rule::under | Rule::kw_within))
-    }
-
-    /// Whether the item could have ended there.
-    fn ends(&self) -> bool {
-        self.expected.contains(&Rule::EOI)
-    }
-}
 
 /// An item that its rule does not take.
 pub(super) struct Refusal {
@@ -65,23 +34,6 @@ impl Builder<'_> {
         Refusal { is_alone: at == 0 && diagnostic.hint.is_none(), diagnostic }
     }
 
-    /// The place of a token.
-    pub(super) fn place(&self, at: usize, found: &str) -> Span {
-        match self.next_token().filter(|_| at >= self.text.len() && !found.is_empty()) {
-            Some(next) => Span::new(self.source.id, next.at, next.end()),
-            None => self.at(at..at + found.len()),
-        }
-    }
-
-    /// The text found, for a message.
-    pub(super) fn quote(&self, found: &str) -> String {
-        if !found.is_empty() {
-            return quote(found);
-        }
-        let is_last = self.item.is_none_or(|item| self.layout.after(item).is_none());
-        if is_last { "the end of the file" } else { "the end of the line" }.to_owned()
-    }
-
     fn describe(&self, fault: &Fault<'_>) -> Diagnostic {
         let slip = self.slip_of_line(fault).or_else(|| self.slip_of_bracket(fault));
         let slip = slip.or_else(|| self.slip_of_opener(fault));
@@ -101,7 +53,7 @@ impl Builder<'_> {
             error!(E0101, place, "{title}")
         };
         let closes = fault.expected.contains(&Rule::t_rparen) || fault.expected.contains(&Rule::t_rbracket);
-        if (closes || starts_declaration(fault.found))
+        if (closes || nouns::starts_declaration(fault.found))
             && let Some((open, bracket)) = nesting::open_bracket(&self.text, fault.at)
         {
             let span = self.at(open..open + 1);
@@ -117,10 +69,10 @@ impl Builder<'_> {
                 diagnostic = diagnostic.related(span, format!("`{bracket}` is still open"));
             }
         }
-        if let Some(hint) = self.hint(fault) { diagnostic.hint(hint) } else { diagnostic }
+        if let Some(hint) = self.remedy(fault) { diagnostic.hint(hint) } else { diagnostic }
     }
 
-    fn hint(&self, fault: &Fault<'_>) -> Option<String> {
+    fn remedy(&self, fault: &Fault<'_>) -> Option<String> {
         if let Some(hint) = self.belonging(fault) {
             return Some(hint);
         }
@@ -153,7 +105,7 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let title = format!("expected the end of the line, found {}", quote(fault.found));
+        let title = format!("expected the end of the line, found {}", nouns::quote(fault.found));
         let items = if fault.rule == Rule::line_of_fields { "fields" } else { "items on one line" };
         Some(error!(E0101, place, "{title}"; hint: "write `;` between two {items}"))
     }
@@ -227,40 +179,6 @@ fn declaration(rule: Rule) -> Rule {
         Rule::line_of_updates => Rule::update,
         _ => Rule::field,
     }
-}
-
-/// Whether a word starts declarations of either language.
-pub(super) fn starts_declaration(word: &str) -> bool {
-    [Rule::item, Rule::property_item].iter().any(|&rule| nouns::words(rule).contains(&word))
-}
-
-/// The farthest failure of the rule of a line, and what it would have taken there.
-pub(super) fn failure(rule: Rule, text: &str) -> Option<(usize, Vec<Rule>)> {
-    let plain = layout::hollow(text);
-    let (at, expected) = place_and_expected(Grammar::parse(rule, &plain).err()?);
-    Some((at + lexeme::all_trivia(&plain[at..]), expected))
-}
-
-/// Where an error of pest lies, and what could have stood there.
-fn place_and_expected(error: pest::error::Error<Rule>) -> (usize, Vec<Rule>) {
-    let at = match error.location {
-        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
-    };
-    let expected = match error.variant {
-        ErrorVariant::ParsingError { mut positives, .. } => {
-            positives.retain(|rule| *rule != Rule::t_unequal);
-            positives
-        }
-        ErrorVariant::CustomError { .. } => Vec::new(),
-    };
-    (at, expected)
-}
-
-/// The text found, for a message.
-pub(super) fn quote(found: &str) -> String {
-    let short: String = found.chars().take(40).flat_map(char::escape_debug).collect();
-    // A quoted text keeps its quotes as they are.
-    format!("`{}`", short.replace("\\\"", "\"").replace("\\'", "'"))
 }
 
 fn expected_nouns(expected: &[Rule]) -> String {

@@ -4,7 +4,7 @@
 //! names. A spelling is reported only if the text reads on once it is replaced.
 
 use super::builder::Builder;
-use super::fault::{Fault, failure};
+use super::failure::{Fault, failure};
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;

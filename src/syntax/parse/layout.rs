@@ -16,6 +16,9 @@ use super::lexeme;
 use crate::syntax::keywords;
 use std::ops::Range;
 
+/// The mark of a value that cannot be read, as in the grammar.
+pub(super) const BROKEN: char = '\u{1A}';
+
 /// A word, number, quoted text or mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::syntax) struct Token<'t> {
@@ -160,7 +163,7 @@ impl<'t> Layout<'t> {
 
 /// A token, unless it is the mark that the parser puts in for a value.
 fn readable(token: &str) -> &str {
-    if token.starts_with(super::builder::BROKEN) { "\u{1B}" } else { token }
+    if token.starts_with(BROKEN) { "\u{1B}" } else { token }
 }
 
 /// Fills a text with blanks up to a length, a line end among them if one was there.

@@ -8,10 +8,13 @@ mod bounds;
 mod braces;
 mod builder;
 pub(super) mod comments;
+mod declaration;
 mod expression;
+mod failure;
 mod fault;
 mod foreign;
 pub(super) mod grammar;
+mod items;
 pub(super) mod layout;
 mod lexeme;
 mod nesting;
@@ -30,7 +33,8 @@ pub(crate) use lexeme::{continues_name, starts_name};
 pub use nouns::edits;
 pub(crate) use quantity::{time_meant, unit_meant};
 
-pub(super) use builder::{Pair, inner};
+pub(super) use builder::Pair;
+pub(super) use items::inner;
 
 use super::ast::{Expr, PropertyFile, ScenarioFile};
 

@@ -190,6 +190,18 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
     })
 }
 
+/// Whether a word starts declarations of either language.
+pub(super) fn starts_declaration(word: &str) -> bool {
+    [Rule::item, Rule::property_item].iter().any(|&rule| words(rule).contains(&word))
+}
+
+/// The text found, for a message.
+pub(super) fn quote(found: &str) -> String {
+    let short: String = found.chars().take(40).flat_map(char::escape_debug).collect();
+    // A quoted text keeps its quotes as they are.
+    format!("`{}`", short.replace("\\\"", "\"").replace("\\'", "'"))
+}
+
 /// `a`, `a or b`, `a, b or c`.
 pub(super) fn list(nouns: &[String]) -> String {
     match nouns {

@@ -3,8 +3,8 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{
-    BinaryOp, Binding, Clauses, Expr, ExprKind, Ident, Measure, MeasureKind, Method, Moment, PropertyFile,
-    PropertyItem, Query, QueryKind, Ranked, Values,
+    BinaryOp, Binding, Clauses, Ident, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query,
+    QueryKind, Ranked, Values,
 };
 use crate::syntax::source::Span;
 
@@ -157,24 +157,8 @@ impl Builder<'_> {
         Some(each.map(|kind| Measure { kind, body: body.clone(), range: range.clone(), span }).collect())
     }
 
-    /// `… at end`, `… at 5 s`
-    pub(super) fn read_at(&mut self, read: Expr, moment: Pair<'_>) -> Expr {
-        let span = read.span.to(self.span(&moment));
-        let moment = match moment.into_inner().find(|part| part.as_rule() == Rule::arith) {
-            Some(time) => Moment::Time(Box::new(self.expr(time))),
-            None => Moment::End,
-        };
-        Expr { kind: ExprKind::At(Box::new(read), moment), span }
-    }
-
     fn bindings(&mut self, pair: Pair<'_>) -> Option<Vec<Binding>> {
         Parts::of(pair).map(|binding| self.binding(binding)).collect()
-    }
-
-    pub(super) fn binding(&mut self, pair: Pair<'_>) -> Option<Binding> {
-        let mut parts = Parts::of(pair);
-        let name = self.ident(&parts.part(Rule::ident)?);
-        Some(Binding { name, value: self.expr(parts.part(Rule::tight)?) })
     }
 
     fn clauses(&mut self, parts: Parts<'_>) -> Option<Clauses> {

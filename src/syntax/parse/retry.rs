@@ -2,7 +2,7 @@
 //! could not be read before can be.
 
 use super::builder::Builder;
-use super::fault::{Fault, failure};
+use super::failure::{Fault, failure};
 use super::grammar::Rule;
 use super::{layout, lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
@@ -19,11 +19,6 @@ const OPENERS: [&str; 9] =
 const SPOKEN: [(&str, &str); 3] = [("rectangle", "rect"), ("disc", "circle"), ("disk", "circle")];
 
 impl Builder<'_> {
-    /// Whether a bracket of the item at hand has no partner.
-    pub(super) fn is_unmatched(&self, at: usize) -> bool {
-        self.item.is_some_and(|item| item.unmatched.contains(&(self.base + at)))
-    }
-
     /// `at = (1, 2 velocity = …`, `speed = normal(1 m/s, 0.1 m/s }`: a bracket that nothing closes, and with which closed
     /// the text goes on.
     pub(super) fn slip_of_bracket(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
@@ -51,11 +46,6 @@ impl Builder<'_> {
             return Some(others.fold(error, |error, (at, _)| error.related(mark(*at), "also not closed")));
         }
         None
-    }
-
-    /// What follows the text found, less blanks.
-    pub(super) fn behind(&self, fault: &Fault<'_>) -> &str {
-        self.text.get(fault.at + fault.found.len()..).unwrap_or_default().trim_start()
     }
 
     /// Whether what was found is a keyword, which stands in no bracket.

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
-use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, PathsDecl, Route, ScenarioFile, Value};
+use crate::syntax::ast::{Item, MoveOption, MovesDecl, PathsDecl, Route, ScenarioFile, Value};
 
 impl Builder<'_> {
     pub(super) fn scenario_file(&mut self) -> ScenarioFile {
@@ -69,19 +69,6 @@ impl Builder<'_> {
             Rule::source => self.source_decl(pair).map(Item::Source),
             _ => None,
         }
-    }
-
-    /// `let f(a) = …`
-    pub(super) fn let_decl(&mut self, pair: Pair<'_>) -> Option<LetDecl> {
-        let mut parts = Parts::of(pair);
-        let name = self.ident(&parts.part(Rule::name)?);
-        let arguments =
-            parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
-        Some(LetDecl { name, arguments, body: self.expr(parts.part(Rule::expr)?) })
-    }
-
-    pub(super) fn parameters(&mut self, pair: Pair<'_>) -> Vec<crate::syntax::ast::Ident> {
-        Parts::of(pair).map(|parameter| self.ident(&parameter)).collect()
     }
 
     fn moves(&mut self, pair: Pair<'_>) -> Option<MovesDecl> {

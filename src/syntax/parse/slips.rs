@@ -1,7 +1,7 @@
 //! Common slips, each with its own words.
 
 use super::builder::{Builder, Pair};
-use super::fault::Fault;
+use super::failure::Fault;
 use super::grammar::Rule;
 use super::{lexeme, nouns};
 use crate::syntax::diagnostic::Diagnostic;

@@ -2,7 +2,7 @@
 
 use super::bounds::OPERATORS;
 use super::builder::Builder;
-use super::fault::Fault;
+use super::failure::Fault;
 use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
