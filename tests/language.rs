@@ -297,6 +297,7 @@ fn items_end_with_their_lines() {
         (1, "kind k: sfm\n\n{\nradius = 0.3 m\nby = 3 }"),
         (2, "moves a\nfor 2 s { stop }\nconst by = 3"),
         (2, "scene {\nwall (0, 0) -- (1, 1)\n-- (2, 2)\nobstacle circle (1, 1)\nradius 2 m }\nlet b = 3"),
+        (1, "process p {\nvar n = 1\nwhen n == 1 ->\nn = 2\nwhen n == 2 -> 1/2:\nn = 3 | 1/2:\nn = 4 }"),
         (1, "process p {\nvar n = 1\nwhen n == 1\nat 2 /s -> 1/2: { n = 2; n = 3 }\n| 1/2: n = 3 }"),
     ] {
         assert_eq!(scenario_items(text).len(), count, "{text}");

@@ -293,14 +293,33 @@ pub(super) struct Mended {
     pub(super) is_torn: bool,
 }
 
+/// The braces without a partner: those that open a block, and those that close one.
+fn unmatched(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<usize>) {
+    let (mut open, mut stray) = (Vec::new(), Vec::new());
+    for (at, token) in tokens.iter().enumerate() {
+        match token.text {
+            "{" => open.push(at),
+            "}" if open.pop().is_none() => stray.push(at),
+            _ => {}
+        }
+    }
+    (open, stray)
+}
+
 /// Mends tokens whose braces do not pair up.
-pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>) -> Mended {
+pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>, in_properties: bool) -> Mended {
     if pairs_up(tokens) {
         return Mended::default();
     }
     let text = Text::of(source, tokens);
     let mut ways: Vec<Vec<Slip>> = text.turned().into_iter().map(|turned| vec![turned]).collect();
     ways.extend([false, true].map(|closes_inside| text.slips(closes_inside)));
+    if in_properties {
+        // No block stands there.
+        let (open, stray) = unmatched(tokens);
+        let open = open.into_iter().map(|open| Slip::Opens { open });
+        ways = vec![open.chain(stray.into_iter().map(|close| Slip::Stray { close })).collect()];
+    }
     ways.retain(|slips| slips.len() <= MOST_SLIPS && pairs_up(&text.mended(slips)));
     // On a tie, what closes within a line is the slip.
     if let Some(slips) = ways.into_iter().min_by_key(Vec::len) {
@@ -311,14 +330,8 @@ pub(super) fn mend(source: &Source, tokens: &mut Vec<Token<'_>>) -> Mended {
         return Mended { slips: slips_said, lines, is_torn: false };
     }
     // The layout is no help: braces that close nothing are errors, and the first that is not closed.
-    let (mut open, mut stray) = (Vec::new(), Vec::new());
-    for (at, token) in tokens.iter().enumerate() {
-        match token.text {
-            "{" => open.push(at),
-            "}" if open.pop().is_none() => stray.push(Slip::Stray { close: at }),
-            _ => {}
-        }
-    }
+    let (open, stray) = unmatched(tokens);
+    let stray: Vec<Slip> = stray.into_iter().map(|close| Slip::Stray { close }).collect();
     let last = text.lines.len() - 1;
     let unclosed = open.iter().map(|open| Slip::NotClosed { open: *open, line: last });
     let told = stray.len() + 1;

@@ -255,8 +255,8 @@ impl Split<'_, '_> {
         let text = |at: usize| self.tokens.get(at).map_or("", |token| token.text);
         let (before, first, second) = (text(at - 1), text(at), text(at + 1));
         let is_operator = |word: &str| word == "in" || self.in_properties && matches!(word, "U" | "W" | "R");
-        // A name that is set begins an item, but for one of several values of parameters.
-        let sets = second == "=" && !matches!(before, "," | "under" | "with");
+        // A name that is set begins an item, but for an update and a value of a parameter.
+        let sets = second == "=" && !matches!(before, "->" | "|" | ":" | "," | "under" | "with");
         if sets || keywords::begins(first, second) {
             return false;
         }

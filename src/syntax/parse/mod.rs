@@ -107,7 +107,7 @@ fn parse<T>(
     if let Some(too_deep) = nesting::depth(source, &tokens) {
         return (None, true, vec![too_deep]);
     }
-    let mended = braces::mend(source, &mut tokens);
+    let mended = braces::mend(source, &mut tokens, in_properties);
     let is_torn = open_comment.is_some() || mended.is_torn;
     let layout = Layout::of(&source.text, tokens, in_properties);
     let mut builder = Builder::of(source, &layout, in_properties, unit);
