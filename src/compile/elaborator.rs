@@ -211,7 +211,7 @@ pub(super) struct Elaborator<'a> {
     pub(super) journal: Vec<(Vain, (ScopeId, String))>,
     /// Parts of the files that could not be read.
     pub(super) torn: Vec<Span>,
-    /// Where values that could not be read stand: nothing more is said of them.
+    /// The places of values that could not be read: nothing more is said of them.
     pub(super) unread: BTreeSet<(SourceId, u32)>,
     /// How much of the clock is known: errors about times that need more are not reported.
     pub(super) told: Told,

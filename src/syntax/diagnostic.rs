@@ -37,7 +37,7 @@ pub struct Label {
     pub text: String,
 }
 
-/// What an error is about, where errors follow from one another.
+/// The subject of an error, for those that follow from one another.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum About {
     /// None of these.
@@ -89,7 +89,7 @@ pub struct Diagnostic {
     pub hangs_on: Vec<Span>,
     /// Whether it depends on no value at its place: an argument may be missing.
     pub is_formal: bool,
-    /// What it is about.
+    /// Its subject.
     pub about: About,
     /// The declaration of a number without a unit that causes it.
     pub comes_of: Option<Span>,

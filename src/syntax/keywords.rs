@@ -27,7 +27,7 @@ pub enum Place {
 }
 use Place::{Behaviour, Moves, Process, Properties, Scenario, Scene, State};
 
-/// What stands behind a keyword that begins an item.
+/// The name behind a keyword that begins an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declares {
     /// No name of its own.
@@ -44,7 +44,7 @@ pub struct Keyword {
     pub word: &'static str,
     /// The parts whose items it begins.
     pub begins: &'static [Place],
-    /// What follows it there.
+    /// The name that follows it there.
     pub declares: Declares,
     /// Whether it only goes on with an item: a line that begins with it is none of its own.
     pub continues: bool,

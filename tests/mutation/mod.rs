@@ -87,6 +87,22 @@ fn the_first_error_lies_where_any_token_was_changed() {
     check_places(1);
 }
 
+#[test]
+fn a_text_that_breaks_off_is_refused_or_whole_and_never_panics() {
+    let mut refused = 0;
+    for Source { name, text, .. } in examples() {
+        for token in tokens(&text).iter().step_by(5) {
+            for end in [token.start, token.end] {
+                let source = Source::new(SourceId(0), name.as_str(), &text[..end]);
+                let said = diagnostics(&source);
+                render(&said, std::slice::from_ref(&source), false);
+                refused += usize::from(!said.is_empty());
+            }
+        }
+    }
+    assert!(refused > 1_000, "{refused}");
+}
+
 /// Changes every n-th token of each text.
 fn check_places(every: usize) {
     let replacements = ["", "=", ")", "}", "(", "{", "xyzzy", "42", ",", "->", "$", "\"", "&&", "é"];

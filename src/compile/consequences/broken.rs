@@ -37,7 +37,7 @@ const BODIES: [&str; 5] = ["agent", "agents", "group", "kind", "source"];
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Broken<'i> {
     sources: &'i [Source],
-    /// Where they stand, and where the errors of the parser are; ascending.
+    /// Their places, and those of the errors of the parser; ascending.
     spans: Vec<Span>,
     errors: Vec<Span>,
     /// All their words, and those that may be the names of what they declare.
@@ -54,7 +54,7 @@ pub(super) struct Broken<'i> {
     fields: bool,
     /// Kinds: what each starts from, and where its name is.
     kinds: BTreeMap<&'i str, (&'i str, Span)>,
-    /// Where the horizon and the step are written.
+    /// The places of the horizon and the step.
     times: Vec<Span>,
     /// Sources with errors.
     with_errors: BTreeSet<SourceId>,
@@ -149,7 +149,7 @@ impl<'i> Broken<'i> {
     fn may_declare(&self, place: Span) -> bool {
         let Some(text) = word(self.sources, place) else { return true };
         let (name, _) = leading_word(bare(text));
-        // Of a name that grew together with the sign behind it, `nin 0 .. 3` for `n: 0 .. 3`, the first part is missed.
+        // A name may have grown together with the sign behind it: `nin 0 .. 3` for `n: 0 .. 3`.
         let is_longer = || {
             let longer = self.names.range(name..).next();
             longer.is_some_and(|longer| longer.starts_with(name))

@@ -36,7 +36,7 @@ pub enum Body {
 /// A part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// What it is about.
+    /// Its subject.
     pub head: Head,
     /// What its units yielded.
     pub bodies: Vec<Body>,

@@ -113,7 +113,7 @@ impl<'s, 't> Text<'s, 't> {
         (is_as_deep && (!self.has(line, "{") || last == "}") && self.first(line) != "}").then_some(line)
     }
 
-    /// What the layout says. Whether a `}` within a line may close a block of several lines is for the caller to choose.
+    /// The slips that the layout shows. Whether a `}` within a line may close a block of several lines is for the caller to choose.
     fn slips(&self, closes_inside: bool) -> Vec<Slip> {
         let mut found = Vec::new();
         let mut stack: Vec<Open> = Vec::new();
@@ -285,7 +285,7 @@ impl<'s, 't> Text<'s, 't> {
 /// Braces that do not pair up.
 #[derive(Default)]
 pub(super) struct Mended {
-    /// What was wrong.
+    /// The errors.
     pub(super) slips: Vec<Diagnostic>,
     /// The lines on which it was.
     pub(super) lines: Vec<Broken>,
@@ -361,7 +361,7 @@ pub(super) fn together(source: &Source, said: Vec<Diagnostic>, slips: Vec<Diagno
         let near = slips.iter().position(|slip| bytes(slip).iter().any(|&byte| line(byte) == line(at)));
         match near {
             None => kept.push(one),
-            // What stands before a brace that closes nothing may be why.
+            // An error before a brace that closes nothing may be its cause.
             Some(slip)
                 if !told.contains(&slip)
                     && (bytes(&slips[slip]).contains(&at)

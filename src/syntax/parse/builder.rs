@@ -1,4 +1,4 @@
-//! What the tree builders share: the source, the item at hand, what was said so far, and walking pest's pairs.
+//! The state that the tree builders share: the source, the item at hand, what was said so far, and walking pest's pairs.
 //!
 //! The grammar fixes the shape of every pair, so the builders take the parts in order and give up
 //! (`None`) on one that is not there; nothing panics.
@@ -127,7 +127,9 @@ impl<'s> Builder<'s> {
 
     /// A place in the source, of bytes of the item.
     pub(super) fn at(&self, bytes: Range<usize>) -> Span {
-        Span::new(self.source.id, self.base + bytes.start, self.base + bytes.end)
+        // A brace that was put in may stand behind the last byte.
+        let last = |at: usize| (self.base + at).min(self.source.text.len());
+        Span::new(self.source.id, last(bytes.start), last(bytes.end))
     }
 
     /// Where a pair stands, without blanks after it.
@@ -157,7 +159,7 @@ impl<'s> Builder<'s> {
         if is_last { "the end of the file" } else { "the end of the line" }.to_owned()
     }
 
-    /// What follows the text found, less blanks.
+    /// The text behind the one found, less blanks.
     pub(super) fn behind(&self, fault: &Fault<'_>) -> &str {
         self.text.get(fault.at + fault.found.len()..).unwrap_or_default().trim_start()
     }

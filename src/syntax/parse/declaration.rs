@@ -1,4 +1,4 @@
-//! What both languages have: functions, settings of parameters, and the moment of a value.
+//! Parts that both languages have: functions, settings of parameters, and the moment of a value.
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;

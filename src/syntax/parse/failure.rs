@@ -1,4 +1,4 @@
-//! Where the rule of an item fails.
+//! The place where the rule of an item fails.
 
 use super::grammar::{Grammar, Rule};
 use super::{layout, lexeme, nouns};
@@ -41,7 +41,7 @@ pub(super) fn failure(rule: Rule, text: &str) -> Option<(usize, Vec<Rule>)> {
     Some((at + lexeme::all_trivia(&plain[at..]), expected))
 }
 
-/// Where an error of pest lies, and what could have stood there.
+/// The place of an error of pest, and the rules that could have stood there.
 pub(super) fn place_and_expected(error: pest::error::Error<Rule>) -> (usize, Vec<Rule>) {
     let at = match error.location {
         InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,

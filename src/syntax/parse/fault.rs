@@ -15,7 +15,7 @@ pub(super) struct Refusal {
 }
 
 impl Builder<'_> {
-    /// What is wrong with the item at hand.
+    /// The error of the item at hand.
     pub(super) fn refusal(&self, rule: Rule, error: pest::error::Error<Rule>) -> Refusal {
         let (at, mut expected) = place_and_expected(error);
         let mut at = at + lexeme::all_trivia(&self.text[at..]);
@@ -97,7 +97,7 @@ impl Builder<'_> {
     /// `mass = 80 kg  radius = 0.3 m`: two items on one line.
     fn slip_of_line(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let (before, rest) = self.text.split_at_checked(fault.at).filter(|_| fault.at > 0)?;
-        // Of a name that is set behind a number nobody knows that it is a unit.
+        // A name that is set behind a number is no unit.
         let is_unit = quantity::UNITS.contains(&fault.found) && !keywords::is_marked(fault.found);
         let is_first = keywords::keyword(fault.found).is_some_and(|keyword| !keyword.begins.is_empty());
         let begins = !is_unit && (sets_name(rest) || is_first);
@@ -170,7 +170,7 @@ fn is_bare_word(text: &str, at: usize, expected: &[Rule]) -> bool {
         && at == word.len() + lexeme::all_trivia(&text[word.len()..])
 }
 
-/// What the rule of a line is a rule of.
+/// The rule of the item that a rule of a line takes.
 fn declaration(rule: Rule) -> Rule {
     match rule {
         Rule::line_of_scenario => Rule::item,

@@ -417,7 +417,8 @@ impl Builder<'_> {
     fn foreign(&self, fault: &Fault<'_>, rows: &'static [Row]) -> Option<Hit> {
         let file = if self.in_properties { Properties } else { Scenario };
         let text = self.written();
-        let line = text[..fault.at].rfind('\n').map_or(0, |end| end + 1);
+        // A brace that was put in may stand behind the last byte.
+        let line = text[..fault.at.min(text.len())].rfind('\n').map_or(0, |end| end + 1);
         let from = text.floor_char_boundary(fault.at.saturating_sub(BEFORE)).max(line);
         let end = text.floor_char_boundary(fault.at.saturating_add(REACH));
         let tokens = Tokens { unit: self.unit, ..Tokens::of(text, from, end) };

@@ -53,7 +53,7 @@ impl<'s> Builder<'s> {
         let outer = (Rc::clone(&self.text), self.base, self.item);
         let mut built = Vec::with_capacity(items.len());
         let mut is_broken = false;
-        // Where a block of another language ends.
+        // The end of a block of another language.
         let mut foreign_end = 0;
         for (place, item) in items.iter().enumerate() {
             let mut text: Rc<str> = self.layout.plain(item).into();
@@ -69,7 +69,8 @@ impl<'s> Builder<'s> {
                     if refusal.diagnostic.code == Code::E0130 {
                         let word = format!("end{}", lexeme::first(&text));
                         let is_end = |item: &Item| self.layout.words(item).eq([word.as_str()]);
-                        foreign_end = items.iter().rposition(is_end).map_or(foreign_end, |end| end + 1);
+                        let end = items[place..].iter().position(is_end);
+                        foreign_end = end.map_or(foreign_end, |end| place + end + 1);
                     }
                     if is_piece {
                         self.lose(item, rule, self.whole(item));
@@ -104,7 +105,7 @@ impl<'s> Builder<'s> {
         built
     }
 
-    /// The items of the block that a pair takes: the first of its blocks that was not asked for before.
+    /// The items of the block that a pair takes.
     pub(super) fn block<T>(
         &mut self,
         block: &Pair<'_>,
@@ -135,7 +136,8 @@ impl<'s> Builder<'s> {
         match own.items.as_slice() {
             [] => {
                 let wanted = nouns::noun(rule).map_or(String::new(), |(_, noun)| noun);
-                let error = unexpected(Span::new(self.source.id, own.close, own.close + 1), &wanted);
+                let close = own.close - self.base;
+                let error = unexpected(self.at(close..close + 1), &wanted);
                 self.say(error);
             }
             [_] => {}

@@ -14,7 +14,7 @@ pub(super) fn too_deep(span: Span) -> Diagnostic {
         hint: "name inner parts with `let`")
 }
 
-/// That the brackets of a file nest too deep.
+/// The error of brackets that nest too deep.
 pub(super) fn depth(source: &Source, tokens: &[Token<'_>]) -> Option<Diagnostic> {
     let mut depth = 0_u16;
     for token in tokens {
@@ -30,7 +30,7 @@ pub(super) fn depth(source: &Source, tokens: &[Token<'_>]) -> Option<Diagnostic>
     None
 }
 
-/// That a comment never ends, and where it starts.
+/// The start of a comment that never ends, and its error.
 pub(super) fn open_comment(source: &Source) -> Option<(usize, Diagnostic)> {
     let text = source.text.as_str();
     let mut at = 0;

@@ -33,7 +33,7 @@ impl Builder<'_> {
         let mut closed = String::new();
         for count in 1..=open.len().min(MOST_BRACKETS) {
             closed.push(nesting::partner(open[open.len() - count].1));
-            // What follows may be an item of its own.
+            // The rest may be an item of its own.
             let ends = || failure(fault.rule, &format!("{}{closed}", &self.text[..fault.at])).is_none();
             if self.read_again(fault, fault.at..fault.at, &closed) == Again::No && !ends() {
                 continue;
