@@ -153,6 +153,11 @@ pub const OPERATORS: [&str; 8] = ["forall", "exists", "F", "G", "X", "U", "W", "
 /// The measures of queries, the folds over windows and sets, and the truth values.
 const OTHERS: [&str; 9] = ["P", "E", "Q", "min", "max", "sum", "mean", "true", "false"];
 
+/// Whether a word is an operator over time in property files.
+pub fn is_temporal(word: &str) -> bool {
+    OPERATORS[2..].contains(&word)
+}
+
 /// A keyword by its word.
 pub fn keyword(word: &str) -> Option<&'static Keyword> {
     KEYWORDS.iter().find(|keyword| keyword.word == word)

@@ -5,11 +5,9 @@ use super::failure::Fault;
 use super::grammar::{Grammar, Rule};
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::keywords::{Declares, keyword};
+use crate::syntax::keywords::{Declares, is_temporal, keyword};
 use pest::Parser;
 
-/// The operators that look ahead.
-pub(super) const OPERATORS: [char; 6] = ['F', 'G', 'X', 'U', 'W', 'R'];
 impl Builder<'_> {
     /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
     pub(super) fn slip_of_time(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
@@ -21,7 +19,8 @@ impl Builder<'_> {
         let operators = ["<=", "≤", "["].iter().filter_map(|mark| {
             let at = line.rfind(mark)?;
             let before = line[..at].trim_end();
-            let letter = before.chars().next_back().filter(|letter| OPERATORS.contains(letter))?;
+            let letter =
+                before.chars().next_back().filter(|letter| is_temporal(letter.encode_utf8(&mut [0; 4])))?;
             let name = &before[..before.len() - letter.len_utf8()];
             let alone = !name.ends_with(lexeme::continues_name);
             (alone && is_bound(&line[at..], fault.found)).then_some((start + name.len(), letter))
@@ -50,7 +49,7 @@ impl Builder<'_> {
         let comparison = matches!(fault.found, "==" | "!=" | "<" | "<=" | ">" | ">=" | "≤" | "≥" | "≠");
         let (unit_at, word) = lexeme::word_before(&self.text, fault.at)?;
         let place = self.place(fault.at, fault.found);
-        if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
+        if comparison && is_temporal(word) {
             return Some(error!(E0119, place, "the bound of `{word}` must be written with `<=`";
                     hint: "write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`"));
         }

@@ -5,7 +5,7 @@ use super::failure::{Fault, failure, place_and_expected};
 use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::keywords;
+use crate::syntax::keywords::{self, Declares};
 
 /// An item that its rule does not take.
 pub(super) struct Refusal {
@@ -76,7 +76,11 @@ impl Builder<'_> {
         if let Some(hint) = self.belonging(fault) {
             return Some(hint);
         }
-        if keywords::OPERATORS.contains(&fault.found) && lexeme::declares_name(&self.text, fault.at) {
+        let declares = |(_, word): (usize, &str)| {
+            keywords::keyword(word).is_some_and(|keyword| keyword.declares != Declares::Nothing)
+        };
+        let is_name = || lexeme::word_before(&self.text, fault.at).is_some_and(declares);
+        if self.in_properties && keywords::OPERATORS.contains(&fault.found) && is_name() {
             return Some("this is an operator in property files; choose another name".to_owned());
         }
         if let Some(word) = Self::meant(fault) {

@@ -7,6 +7,7 @@ use super::builder::Builder;
 use super::failure::{Fault, failure};
 use super::{lexeme, quantity};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::keywords::is_temporal;
 use crate::syntax::source::Span;
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -273,7 +274,7 @@ impl<'t> Tokens<'t> {
             Some(b'n') => one(self.is_number(at)),
             Some(b'q') => one(token.starts_with('"')),
             Some(b'r') => one(matches!(token, ">=" | ">" | "<=" | "<")),
-            Some(b'o') => one(matches!(token, "F" | "G" | "X" | "U" | "W" | "R")),
+            Some(b'o') => one(is_temporal(token)),
             Some(b'y') => one(matches!(token, "int" | "double" | "float" | "real" | "bool")),
             Some(b't') if self.is_number(at) => {
                 // A name that is set or has a member is no unit, as in the grammar.

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, Pair};
 use super::grammar::{Grammar, Rule};
-use super::layout::{self, BROKEN, Item};
+use super::layout::{self, BROKEN, Block, Item};
 use super::{lexeme, nouns};
 use crate::syntax::ast::Broken;
 use crate::syntax::codes::Code;
@@ -112,12 +112,13 @@ impl<'s> Builder<'s> {
         rule: Rule,
         build: &mut dyn FnMut(&mut Self, Pair<'_>) -> Option<T>,
     ) -> Vec<T> {
-        let open = self.base + block.as_span().start();
-        let blocks = self.item.map_or(&[][..], |item| &item.blocks);
-        match blocks.iter().find(|block| block.open == open) {
-            Some(block) => self.items(&block.items, rule, build),
-            None => Vec::new(),
-        }
+        self.taken(block).map_or_else(Vec::new, |block| self.items(&block.items, rule, build))
+    }
+
+    /// The block of the item at hand that a pair takes.
+    fn taken(&self, pair: &Pair<'_>) -> Option<&'s Block> {
+        let open = self.base + pair.as_span().start();
+        self.item?.blocks.iter().find(|block| block.open == open)
     }
 
     /// The item of a block that holds just one.
@@ -127,8 +128,7 @@ impl<'s> Builder<'s> {
         rule: Rule,
         build: &mut dyn FnMut(&mut Self, Pair<'_>) -> Option<T>,
     ) -> Option<T> {
-        let open = self.base + block.as_span().start();
-        let own = self.item?.blocks.iter().find(|block| block.open == open)?;
+        let own = self.taken(block)?;
         let unexpected = |span: Span, wanted: &str| {
             let found = self.source.slice(span);
             error!(E0101, span, "expected {wanted}, found `{found}`")

@@ -82,17 +82,15 @@ pub(in crate::syntax) fn tokens(text: &str) -> Vec<Token<'_>> {
     found
 }
 
-/// Marks with which a line does not end, and those with which none begins.
+/// Marks that stand between two parts of an item: neither does a line end with one, nor does an item begin with it.
 #[rustfmt::skip]
-const NEVER_LAST: [&str; 29] = [
+const BETWEEN: [&str; 26] = [
     "+", "-", "*", "/", "^", "==", "!=", "≠", "<=", "≤", "<", ">=", "≥", ">", "&", "∧", "|", "∨", "=>", "⇒", "<=>", "⇔",
-    ",", "->", "--", "..", "=", ":", "!",
+    ",", "->", "--", "..",
 ];
-#[rustfmt::skip]
-const NEVER_FIRST: [&str; 30] = [
-    "+", "-", "*", "/", "^", "==", "!=", "≠", "<=", "≤", "<", ">=", "≥", ">", "&", "∧", "|", "∨", "=>", "⇒", "<=>", "⇔",
-    ",", "->", "--", "..", "(", ")", "]", "{",
-];
+/// Further marks with which a line does not end, and further ones with which no item begins.
+const NEVER_LAST: [&str; 3] = ["=", ":", "!"];
+const NEVER_FIRST: [&str; 4] = ["(", ")", "]", "{"];
 
 impl<'t> Layout<'t> {
     /// The items of tokens whose braces pair up.
@@ -260,7 +258,9 @@ impl Split<'_, '_> {
         if sets || keywords::begins(first, second) {
             return false;
         }
-        NEVER_LAST.contains(&before)
+        BETWEEN.contains(&before)
+            || BETWEEN.contains(&first)
+            || NEVER_LAST.contains(&before)
             || NEVER_FIRST.contains(&first)
             || is_operator(before)
             || is_operator(first)

@@ -115,11 +115,6 @@ pub(super) fn is_open_text(token: &str) -> bool {
     token.starts_with('"') && !closed
 }
 
-/// Whether a name is declared at a place of a property file.
-pub(super) fn declares_name(text: &str, at: usize) -> bool {
-    word_before(text, at).is_some_and(|(_, word)| ["property", "let", "const"].contains(&word))
-}
-
 /// The word or number that ends right before `at`, blanks skipped, and where it starts.
 pub(super) fn word_before(text: &str, at: usize) -> Option<(usize, &str)> {
     let trimmed = text[..at].trim_end();

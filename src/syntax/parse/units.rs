@@ -1,11 +1,11 @@
 //! Slips around units.
 
-use super::bounds::OPERATORS;
 use super::builder::Builder;
 use super::failure::Fault;
 use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::keywords::is_temporal;
 use std::ops::Range;
 
 /// Words that other languages, or people, have before the initial value of a variable.
@@ -19,8 +19,7 @@ impl Builder<'_> {
         let before = self.text[..number_at].trim_end();
         let bounded = before.strip_suffix("<=").or_else(|| before.strip_suffix('≤'))?.trim_end();
         let (_, operator) = lexeme::word_before(bounded, bounded.len())?;
-        let is_bound = matches!(operator, "min" | "max" | "sum" | "mean")
-            || operator.len() == 1 && operator.starts_with(OPERATORS);
+        let is_bound = matches!(operator, "min" | "max" | "sum" | "mean") || is_temporal(operator);
         let is_number = number.starts_with(|c: char| c.is_ascii_digit());
         // A name with its member is no unit.
         let is_fine = quantity::UNITS.contains(&word) || word.contains('.');
