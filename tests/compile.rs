@@ -19,7 +19,7 @@ fn compiled(scenario: &str, properties: &str) -> (Option<Study>, String) {
     let mut files = Files::default();
     for request in requests(&scenario) {
         let path = format!("{}/../shared/data/eth-biwi/{}", env!("CARGO_MANIFEST_DIR"), request.path);
-        files.insert(request.path.clone(), std::fs::read(&path).map_err(|e| e.to_string()));
+        files.provide(request.path.clone(), std::fs::read(&path).map_err(|e| e.to_string()));
     }
     let input = Input {
         sources: &sources,

@@ -142,7 +142,7 @@ fn front_end(scenario: &str, properties: &str) -> Result<(), TestCaseError> {
     said.extend(more);
     let mut files = Files::default();
     for request in requests(&scenario) {
-        files.insert(request.path, Err("left out".to_owned()));
+        files.provide(request.path, Err("left out".to_owned()));
     }
     let input = Input {
         sources: &sources,

@@ -2,11 +2,12 @@
 
 use crate::base::decimal::Decimal;
 pub use crate::base::dimension::{Dimension, describe};
+use crate::compile::nearest;
 use crate::syntax::ast::UnitExpr;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The number of a text that is one number with a unit.
-pub(super) fn single_number(text: &str) -> Option<&str> {
+pub(crate) fn single_number(text: &str) -> Option<&str> {
     let (number, unit) = text.split_once(' ')?;
     let is_number = number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
     (is_number && !unit.contains([' ', '('])).then_some(number)
@@ -61,7 +62,7 @@ pub fn resolve(expression: &UnitExpr) -> Result<Unit, Diagnostic> {
     for factor in &expression.factors {
         let Some(unit) = unit(&factor.name.name) else {
             let mut error = error!(E0113, factor.name.span, "unknown unit `{}`", factor.name.name);
-            if let Some(near) = super::nearest::nearest(&factor.name.name, UNITS.iter().copied()) {
+            if let Some(near) = nearest::nearest(&factor.name.name, UNITS.iter().copied()) {
                 error = error.hint(format!("did you mean `{near}`?"));
             }
             return Err(error);

@@ -1,7 +1,7 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
-use super::sighting::{Grouping, Seen};
-use super::wishes::{beside, destinations};
+use crate::compile::context::sighting::{Grouping, Seen};
+use crate::compile::people::intended::{beside, destinations};
 use crate::data::tracks::Velocity;
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Text, Value};
 use crate::syntax::diagnostic::Diagnostic;
@@ -64,7 +64,7 @@ fn asks_for_destinations(file: &ScenarioFile, tracks: &str) -> bool {
 }
 
 /// A file that could not be opened.
-pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
+pub(crate) fn missing(span: Span, reason: &str) -> Diagnostic {
     error!(E0701, span, "{}", reason.to_owned();
         hint: "files are searched beside the scenario, then in each `--data DIR`")
 }
@@ -88,7 +88,7 @@ impl Files {
     }
 
     /// Hands over the contents of a path, or a sentence why there are none.
-    pub fn insert(&mut self, path: impl Into<String>, contents: Result<Vec<u8>, String>) {
+    pub fn provide(&mut self, path: impl Into<String>, contents: Result<Vec<u8>, String>) {
         self.contents.insert(path.into(), contents);
     }
 
@@ -98,7 +98,7 @@ impl Files {
     }
 
     /// Who is seen now instead of what the tracks of this name contain.
-    pub(super) fn seen(&self, tracks: &str) -> Option<&Seen> {
+    pub(crate) fn seen(&self, tracks: &str) -> Option<&Seen> {
         self.seen.get(tracks)
     }
 

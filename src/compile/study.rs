@@ -1,14 +1,15 @@
 //! What compilation yields: worlds to run and questions to answer about them.
 
-use super::dimension::Dimension;
-use super::wording::{Frame, Uses};
-use super::written::Written;
+pub use crate::compile::context::parts::{Form, Origins, Part};
+use crate::compile::context::roster;
+pub use crate::compile::context::wording::Texts;
+use crate::compile::dimension::Dimension;
+use crate::compile::written::Written;
 use crate::logic::{Root, Tree};
-use crate::model::{AgentId, Body, Bool, Num, Scenario, Set};
+use crate::model::{AgentId, Body, Bool, Num, Scenario};
 use crate::stats::Chosen;
-use crate::syntax::source::{Source, Span};
-use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Everything a call asks.
@@ -56,101 +57,7 @@ pub struct World {
 impl World {
     /// The place where the start of an agent is written.
     pub fn place_of(&self, agent: AgentId) -> Option<Span> {
-        super::places::written(&self.places, agent)
-    }
-}
-
-/// Where what can go wrong while a trial runs is written.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Origins {
-    /// The commands of each process, copies of an array one by one.
-    pub commands: Vec<Vec<Span>>,
-    /// The variables of all processes.
-    pub variables: Vec<Span>,
-    /// The behaviours, in the order of their declaration.
-    pub behaviours: Vec<Span>,
-    /// The imports that gave barriers: the numbers of these, and the file name.
-    pub imports: Vec<(Range<usize>, Span)>,
-}
-
-/// How what is observed was written.
-#[derive(Clone, Debug, Default)]
-pub struct Texts {
-    /// Each atom.
-    pub atoms: Vec<String>,
-    /// Those of them that are made of others, by their number.
-    pub parts: BTreeMap<u32, Arc<Part>>,
-    /// Generated atoms: an agent has the left side of an implication.
-    pub cases: BTreeSet<u32>,
-    /// Generated atoms: an agent of a quantified set is present.
-    pub implied: BTreeSet<u32>,
-    /// Each signal, and its dimension.
-    pub signals: Vec<(String, Dimension)>,
-    /// Comparisons of numbers over time, by the index of their node, and the dimension of their sides.
-    pub comparisons: BTreeMap<u32, (String, Dimension)>,
-    /// The files, for the words of parts.
-    pub sources: Arc<[Source]>,
-    /// Where in them names are used that stand for something else.
-    pub uses: Uses,
-}
-
-/// A condition of one state as it was written. Few are ever shown, so the text is made only on request.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// Where it is written.
-    pub(super) place: Span,
-    /// What names stand for there.
-    pub(super) frame: Option<Arc<Frame>>,
-    /// Its text, if it was generated.
-    pub(super) said: Option<Box<str>>,
-    /// What it is made of.
-    pub form: Form,
-}
-
-/// What a condition of one state is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Form {
-    /// Nothing that is a condition.
-    Plain(Bool),
-    /// A name or a call stands for another.
-    Named(Arc<Part>),
-    /// Not.
-    Not(Arc<Part>),
-    /// All of them.
-    All(Vec<Arc<Part>>),
-    /// Any of them.
-    Any(Vec<Arc<Part>>),
-    /// Both or neither.
-    Both(Arc<Part>, Arc<Part>),
-    /// It is true of each of a set, who is the running one in it.
-    Each(Set, Arc<Part>),
-    /// It is true of someone of a set.
-    Someone(Set, Arc<Part>),
-}
-
-impl Part {
-    /// The condition itself.
-    pub fn truth(&self) -> Bool {
-        let all = |list: &[Arc<Self>]| list.iter().map(|one| one.truth()).collect();
-        match &self.form {
-            Form::Plain(truth) => truth.clone(),
-            Form::Named(inner) => inner.truth(),
-            Form::Not(inner) => Bool::Not(Box::new(inner.truth())),
-            Form::All(list) => Bool::And(all(list)),
-            Form::Any(list) => Bool::Or(all(list)),
-            Form::Both(a, b) => Bool::Iff(Box::new(a.truth()), Box::new(b.truth())),
-            Form::Each(set, body) => Bool::Forall(set.clone(), Box::new(body.truth())),
-            Form::Someone(set, body) => Bool::Exists(set.clone(), Box::new(body.truth())),
-        }
-    }
-
-    /// Whether it has no parts of which one or the other may decide.
-    pub fn is_plain(&self) -> bool {
-        match &self.form {
-            Form::Plain(_) => true,
-            Form::Not(inner) | Form::Each(_, inner) | Form::Someone(_, inner) => inner.is_plain(),
-            _ => false,
-        }
+        roster::written(&self.places, agent)
     }
 }
 

@@ -1,17 +1,39 @@
 //! A scenario under one combination of parameter values.
 
-use super::dimension::Dimension;
-use super::elaborator::{Elaborator, Locals, Lowered, Reported};
-use super::files::Files;
-use super::lower::{BUILT_IN, OPERATORS};
-use super::moments;
-use super::number::Number;
-use super::people::People;
-use super::process::Declared;
-use super::symbols::Meaning;
-use super::told::{self, Told};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
+use crate::compile::behaviour;
+use crate::compile::context::clock;
+use crate::compile::context::clock::Told;
+use crate::compile::context::entry;
+use crate::compile::context::moments;
+use crate::compile::context::number::Number;
+use crate::compile::context::people::People;
+use crate::compile::context::people::keep_starts;
+use crate::compile::context::processes::Declared;
+use crate::compile::context::symbols;
+use crate::compile::context::symbols::Meaning;
+use crate::compile::context::symbols::Scope;
+use crate::compile::context::typed::Typed;
+use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::dimension::Dimension;
+use crate::compile::files::Files;
+use crate::compile::lower::builtin::{BUILT_IN, OPERATORS};
+use crate::compile::lower::call;
+use crate::compile::lower::defaults;
+use crate::compile::nearest;
+use crate::compile::people;
+use crate::compile::people::groups;
+use crate::compile::people::kinds;
+use crate::compile::people::places;
+use crate::compile::people::routes;
+use crate::compile::people::sources;
+use crate::compile::people::step;
+use crate::compile::people::stepping;
+use crate::compile::people::tracks;
+use crate::compile::process;
+use crate::compile::scene;
+use crate::compile::scene::periodic;
 use crate::model::{BehaviourId, BuiltIn, Kind, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
@@ -22,427 +44,425 @@ use std::collections::BTreeMap;
 /// Most ticks of a trial.
 const MOST_TICKS: u64 = 1 << 32;
 
-impl<'a> Elaborator<'a> {
-    /// Elaborates a scenario with some parameters set, and declares the names of property files.
-    pub(super) fn elaborate(
-        sources: &'a [Source],
-        scenario: &'a ScenarioFile,
-        properties: &'a [PropertyFile],
-        files: &Files,
-        settings: BTreeMap<String, Number>,
-        measured: &[Decimal],
-    ) -> (Self, Option<Scenario>) {
-        let mut this = Self::new(sources, settings);
-        this.measured = measured.to_vec();
-        this.declare(scenario);
-        this.declare_properties(properties);
-        let broken = scenario.broken.iter().chain(properties.iter().flat_map(|file| &file.broken));
-        this.torn = broken.map(|item| item.span).collect();
-        this.unread = this.torn.iter().map(|head| (head.source, head.end)).collect();
-        this.doubt_defaults(scenario);
-        this.warn_of_meanings();
-        let built = this.build(scenario, files).ok();
-        (this, built)
-    }
+/// Elaborates a scenario with some parameters set, and declares the names of property files.
+pub(crate) fn elaborate<'a>(
+    sources: &'a [Source],
+    scenario: &'a ScenarioFile,
+    properties: &'a [PropertyFile],
+    files: &Files,
+    settings: BTreeMap<String, Number>,
+    measured: &[Decimal],
+) -> (Context<'a>, Option<Scenario>) {
+    let mut context = Context::new(sources, settings);
+    context.time.measured = measured.to_vec();
+    declare(&mut context, scenario);
+    declare_properties(&mut context, properties);
+    let broken = scenario.broken.iter().chain(properties.iter().flat_map(|file| &file.broken));
+    context.torn = broken.collect();
+    context.sink.unread = context.torn.iter().map(|item| (item.span.source, item.span.end)).collect();
+    defaults::doubt_defaults(&mut context, scenario);
+    warn_of_meanings(&mut context);
+    let built = build(&mut context, scenario, files).ok();
+    (context, built)
+}
 
-    fn declare(&mut self, file: &'a ScenarioFile) {
+fn declare<'a>(context: &mut Context<'a>, file: &'a ScenarioFile) {
+    for item in &file.items {
+        let (name, meaning) = match item {
+            Item::Const { name, value } => (name, Meaning::Constant(value)),
+            Item::Param { name, value, range } => (name, Meaning::Param { value, range: range.as_ref() }),
+            Item::Let(decl) => (&decl.name, Meaning::Let(decl)),
+            Item::Kind(decl) => (&decl.name, Meaning::Kind(decl)),
+            Item::Agents(decl) => (&decl.name, Meaning::Declared),
+            Item::Group(decl) => (&decl.name, Meaning::Declared),
+            Item::Scene(items) => {
+                scene::declare_scene(context, items);
+                continue;
+            }
+            Item::Title(_) | Item::Setting { .. } | Item::Tracks { .. } | Item::Moves(_) | Item::Paths(_) => {
+                continue;
+            }
+            Item::Process(decl) => {
+                context.processes.push(Declared::new(decl));
+                (&decl.name, Meaning::Process(context.processes.len() as u32 - 1))
+            }
+            Item::Behaviour(decl) => {
+                let id = BehaviourId(context.conducts.behaviours.len() as u32);
+                behaviour::declare_behaviour(context, decl);
+                (&decl.name, Meaning::Behaviour(id))
+            }
+            Item::Source(decl) => (&decl.name, Meaning::Declared),
+        };
+        let reserved = match (&meaning, name.name.as_str()) {
+            (Meaning::Kind(_), name) => {
+                Kind::named(name).map(|kind| format!("`{}` is the name of {}", kind.name(), kind.meaning()))
+            }
+            (_, "self") => Some("`self` is the agent that has a behaviour".to_owned()),
+            _ => None,
+        };
+        if let Some(text) = reserved {
+            context.note(error!(E0202, name.span, "{text}"; hint: "choose another name"));
+        }
+        entry::enter(context, name, meaning);
+    }
+}
+
+fn declare_properties<'a>(context: &mut Context<'a>, files: &'a [PropertyFile]) {
+    for file in files {
+        let mut scope = Scope::default();
         for item in &file.items {
             let (name, meaning) = match item {
-                Item::Const { name, value } => (name, Meaning::Constant(value)),
-                Item::Param { name, value, range } => (name, Meaning::Param { value, range: range.as_ref() }),
-                Item::Let(decl) => (&decl.name, Meaning::Let(decl)),
-                Item::Kind(decl) => (&decl.name, Meaning::Kind(decl)),
-                Item::Agents(decl) => (&decl.name, Meaning::Declared),
-                Item::Group(decl) => (&decl.name, Meaning::Declared),
-                Item::Scene(items) => {
-                    self.declare_scene(items);
-                    continue;
-                }
-                Item::Title(_)
-                | Item::Setting { .. }
-                | Item::Tracks { .. }
-                | Item::Moves(_)
-                | Item::Paths(_) => continue,
-                Item::Process(decl) => {
-                    self.processes.push(Declared::new(decl));
-                    (&decl.name, Meaning::Process(self.processes.len() as u32 - 1))
-                }
-                Item::Behaviour(decl) => {
-                    let id = BehaviourId(self.behaviours.len() as u32);
-                    self.declare_behaviour(decl);
-                    (&decl.name, Meaning::Behaviour(id))
-                }
-                Item::Source(decl) => (&decl.name, Meaning::Declared),
+                PropertyItem::Let(decl) => (&decl.name, Meaning::Let(decl)),
+                PropertyItem::Const { name, value } => (name, Meaning::Constant(value)),
+                PropertyItem::Property { name, formula } => (name, Meaning::Property(formula)),
+                PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
             };
-            let reserved = match (&meaning, name.name.as_str()) {
-                (Meaning::Kind(_), name) => Kind::named(name)
-                    .map(|kind| format!("`{}` is the name of {}", kind.name(), kind.meaning())),
-                (_, "self") => Some("`self` is the agent that has a behaviour".to_owned()),
-                _ => None,
-            };
-            if let Some(text) = reserved {
-                self.note(error!(E0202, name.span, "{text}"; hint: "choose another name"));
+            if let Some(first) = context.names.scopes[0].get(&name.name) {
+                let error = error!(E0202, name.span, "`{}` is already a name of the scenario", name.name)
+                    .related(first.span, "declared here");
+                context.note(error);
+                // Its meaning in this file is uncertain, so its uses cause no further errors.
+                context.names.broken.insert((context.names.scopes.len(), name.name.clone()));
+                entry::doubt(context, context.names.scopes.len(), &name.name);
+                let _ = scope.declare(&name.name, name.span, meaning);
+            } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
+                context.note(error);
+                entry::doubt(context, context.names.scopes.len(), &name.name);
             }
-            self.enter(name, meaning);
+        }
+        context.names.scopes.push(scope);
+    }
+}
+
+/// Warns of names that mean something else, too.
+fn warn_of_meanings(context: &mut Context<'_>) {
+    let mut found = Vec::new();
+    for (number, scope) in context.names.scopes.iter().enumerate() {
+        for (name, entry) in scope.entries() {
+            let calls = matches!(&entry.meaning, Meaning::Let(decl) if !decl.arguments.is_empty());
+            let hint = if BUILT_IN.contains(&name) || calls && BuiltIn::find(name).is_some() {
+                "it hides the built-in meaning; choose another name"
+            } else if number == 0 && OPERATORS.contains(&name) {
+                "it is an operator in property files, so formulas there cannot use it; choose another name"
+            } else {
+                continue;
+            };
+            let text = format!("the name `{name}` has another meaning");
+            found.push(Diagnostic::warning(Code::W0201, entry.span, text).hint(hint));
         }
     }
+    for warning in found {
+        context.note(warning);
+    }
+}
 
-    fn declare_properties(&mut self, files: &'a [PropertyFile]) {
-        for file in files {
-            let mut scope = super::symbols::Scope::default();
-            for item in &file.items {
-                let (name, meaning) = match item {
-                    PropertyItem::Let(decl) => (&decl.name, Meaning::Let(decl)),
-                    PropertyItem::Const { name, value } => (name, Meaning::Constant(value)),
-                    PropertyItem::Property { name, formula } => (name, Meaning::Property(formula)),
-                    PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
-                };
-                if let Some(first) = self.scopes[0].get(&name.name) {
-                    let error = error!(E0202, name.span, "`{}` is already a name of the scenario", name.name)
-                        .related(first.span, "declared here");
-                    self.note(error);
-                    // Its meaning in this file is uncertain, so its uses cause no further errors.
-                    self.broken.insert((self.scopes.len(), name.name.clone()));
-                    self.doubt(self.scopes.len(), &name.name);
-                    let _ = scope.declare(&name.name, name.span, meaning);
-                } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
-                    self.note(error);
-                    self.doubt(self.scopes.len(), &name.name);
-                }
+fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
+    let mut told = if clock::is_stepped(file) { Told::Stepped } else { Told::Nothing };
+    let clock = settle_clock(context, file, &mut told);
+    context.sink.told = if told == Told::Nothing && clock.is_ok() { Told::Whole } else { told };
+    let variables = process::settle_variables(context);
+    periodic::settle_periods(context, file);
+    for item in &file.items {
+        if let Item::Tracks { name, file, body } = item {
+            let hint = "declare the agents one by one";
+            if periodic::refuse_if_periodic(context, name.span, "recordings", hint).is_err() {
+                entry::enter(context, name, Meaning::Doubtful);
+                continue;
             }
-            self.scopes.push(scope);
+            tracks::tracks(context, name, file.as_ref(), body, files);
         }
     }
+    context.tracks.grouping = files.grouping;
+    stepping::settle_gaits(context, file, files);
+    let (mut barrier, mut line) = (0, 0);
+    for item in &file.items {
+        if let Item::Scene(items) = item {
+            scene::settle_scene(context, items, files, (&mut barrier, &mut line));
+        }
+    }
+    let mut people = People::default();
+    for item in &file.items {
+        match item {
+            Item::Agents(decl) => people::agents(context, decl, &mut people),
+            Item::Group(decl) => groups::group(context, decl, &mut people),
+            _ => {}
+        }
+    }
+    routes::leave_by_moves(context, file);
+    let mut sources = people::never_arriving(context, &people);
+    for item in &file.items {
+        if let Item::Source(decl) = item {
+            sources.extend(sources::source(context, decl, &mut people));
+        }
+    }
+    let count = variables.len();
+    let processes = process::settle_commands(context, variables, &mut people);
+    let behaviours = behaviour::settle_behaviours(context, &mut people, count);
+    let moves = routes::all_moves(context, file, &people);
+    check_unused(context, file);
+    check_titles(context, file);
+    places::check_places(context, &mut people);
+    if clock.is_err() || context.sink.failed() {
+        keep_starts(context, people, sources);
+        return Err(Reported);
+    }
+    step::check_step(context, file, &people.agents);
+    let title = file
+        .items
+        .iter()
+        .find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
+    context.roster.places = people.places;
+    Ok(Scenario {
+        title: title.unwrap_or_default(),
+        clock: context.time.clock,
+        horizon: context.time.horizon,
+        scene: context.scene.clone(),
+        agents: people.agents,
+        groups: people.groups,
+        moves,
+        processes,
+        behaviours,
+        sources,
+    })
+}
 
-    /// Warns of names that mean something else, too.
-    fn warn_of_meanings(&mut self) {
-        let mut found = Vec::new();
-        for (number, scope) in self.scopes.iter().enumerate() {
-            for (name, entry) in scope.entries() {
-                let calls = matches!(&entry.meaning, Meaning::Let(decl) if !decl.arguments.is_empty());
-                let hint = if BUILT_IN.contains(&name) || calls && BuiltIn::find(name).is_some() {
-                    "it hides the built-in meaning; choose another name"
-                } else if number == 0 && OPERATORS.contains(&name) {
-                    "it is an operator in property files, so formulas there cannot use it; choose another name"
+/// A scenario has one title.
+fn check_titles(context: &mut Context<'_>, file: &ScenarioFile) {
+    let titles = file.items.iter().filter_map(|item| match item {
+        Item::Title(text) => Some(text.span),
+        _ => None,
+    });
+    let titles: Vec<Span> = titles.collect();
+    if let [first, others @ ..] = titles.as_slice() {
+        for other in others {
+            let error = error!(E0202, *other, "a scenario can have only one title");
+            context.note(error.related(*first, "first title").hint("remove one of them"));
+        }
+    }
+}
+
+/// Checks unused declarations as well.
+fn check_unused<'a>(context: &mut Context<'a>, file: &'a ScenarioFile) {
+    let locals = Locals::of(0);
+    for item in &file.items {
+        match item {
+            Item::Const { name, value } => {
+                let lowered = lower_declared(context, name, value);
+                let _ = context.unchanging(lowered, value);
+            }
+            Item::Param { name, value, range } => {
+                let declared = lower_declared(context, name, value);
+                if let Some(range) = range {
+                    check_range(context, name, (declared, value), range);
+                }
+            }
+            Item::Kind(decl)
+                if context.names.scopes[0].get(&decl.name.name).is_some_and(|e| e.span == decl.name.span) =>
+            {
+                let _ = kinds::kind(context, &decl.name);
+            }
+            Item::Kind(decl) => {
+                let _ = kinds::own_kind(context, decl);
+            }
+            Item::Let(decl) => {
+                context.temporal = true;
+                if decl.arguments.is_empty() {
+                    let _ = lower_declared(context, &decl.name, &decl.body);
                 } else {
-                    continue;
+                    call::look_into(context, decl, &locals);
+                }
+                context.temporal = false;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The range of a parameter, and whether its default lies in it.
+fn check_range(
+    context: &mut Context<'_>,
+    name: &Ident,
+    (declared, value): (Lowered<Typed>, &Expr),
+    range: &(Expr, Expr),
+) {
+    let (locals, (low, high)) = (Locals::of(0), range);
+    if defaults::fault_of_default(context, name, value, range).is_some() {
+        return;
+    }
+    // What it is set to is judged where that is done.
+    let default = declared.and_then(|_| context.number(value, &locals));
+    let Ok(number) = default else {
+        let _ = (context.number(low, &locals), context.number(high, &locals));
+        return;
+    };
+    let place = low.span.to(high.span);
+    // A default that something else takes the place of need not lie in its range where one of them follows from what
+    // is set.
+    let is_replaced = context.names.settings.contains_key(&name.name)
+        && (context.names.hangs_on_parameters(place) || context.names.hangs_on_parameters(value.span));
+    let ends = (
+        context.number_of(low, number.dimension, &locals),
+        context.number_of(high, number.dimension, &locals),
+    );
+    let (Ok(low), Ok(high)) = ends else { return };
+    if low.value > high.value {
+        context.roster.any_start = true;
+        context.note(error!(E0405, place, "the range is empty"));
+    } else if !is_replaced && (number.value < low.value || number.value > high.value) {
+        let text = format!("the default of `{}` is outside its range", name.name);
+        context.roster.any_start = true;
+        context.note(error!(E0405, value.span, "{text}").hanging_on(place));
+    }
+}
+
+fn lower_declared(context: &mut Context<'_>, name: &Ident, value: &Expr) -> Lowered<Typed> {
+    let is_taken = context.names.scopes[0].get(&name.name).is_some_and(|entry| entry.span != name.span);
+    if is_taken || context.names.is_doubtful(0, &name.name) {
+        // It stands for something else, or who knows.
+        return context.lower(value, &Locals::of(0));
+    }
+    let expr = Expr { kind: ExprKind::Name(name.name.clone()), span: value.span };
+    context.lower(&expr, &Locals::of(0))
+}
+
+/// Settles the clock, and notes how much of it is certain.
+fn settle_clock<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, told: &mut Told) -> Lowered<()> {
+    let mut found: [Option<(&Expr, Span)>; 2] = [None, None];
+    // What a slip of the pen was probably meant to set.
+    let mut meant = [false; 2];
+    let mut sure = [true; 2];
+    let mut failed = false;
+    for item in &file.items {
+        let Item::Setting { name, value } = item else { continue };
+        let slot = match name.name.as_str() {
+            "horizon" => 0,
+            "step" => 1,
+            _ => {
+                let error = symbols::unknown(
+                    "setting",
+                    &name.name,
+                    name.span,
+                    Code::E0207,
+                    ["horizon", "step"].into_iter(),
+                );
+                let near = nearest::nearest(&name.name, ["horizon", "step"].into_iter());
+                meant = [meant[0] || near == Some("horizon"), meant[1] || near == Some("step")];
+                let general =
+                    "the settings of a scenario are `horizon` and `step`; a constant begins with `const`";
+                let hint = match &error.hint {
+                    Some(near) => format!("{near} {general}"),
+                    None => general.to_owned(),
                 };
-                let text = format!("the name `{name}` has another meaning");
-                found.push(Diagnostic::warning(Code::W0201, entry.span, text).hint(hint));
-            }
-        }
-        for warning in found {
-            self.note(warning);
-        }
-    }
-
-    fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
-        let mut told = if told::is_stepped(file) { Told::Stepped } else { Told::Nothing };
-        let clock = self.settle_clock(file, &mut told);
-        self.told = if told == Told::Nothing && clock.is_ok() { Told::Whole } else { told };
-        let variables = self.settle_variables();
-        self.settle_periods(file);
-        for item in &file.items {
-            if let Item::Tracks { name, file, body } = item {
-                let hint = "declare the agents one by one";
-                if self.refuse_if_periodic(name.span, "recordings", hint).is_err() {
-                    self.enter(name, Meaning::Doubtful);
-                    continue;
-                }
-                self.tracks(name, file.as_ref(), body, files);
-            }
-        }
-        self.grouping = files.grouping;
-        self.settle_gaits(file, files);
-        let (mut barrier, mut line) = (0, 0);
-        for item in &file.items {
-            if let Item::Scene(items) = item {
-                self.settle_scene(items, files, (&mut barrier, &mut line));
-            }
-        }
-        let mut people = People::default();
-        for item in &file.items {
-            match item {
-                Item::Agents(decl) => self.agents(decl, &mut people),
-                Item::Group(decl) => self.group(decl, &mut people),
-                _ => {}
-            }
-        }
-        self.leave_by_moves(file);
-        let mut sources = self.never_arriving(&people);
-        for item in &file.items {
-            if let Item::Source(decl) = item {
-                sources.extend(self.source(decl, &mut people));
-            }
-        }
-        let count = variables.len();
-        let processes = self.settle_commands(variables, &mut people);
-        let behaviours = self.settle_behaviours(&mut people, count);
-        let moves = self.all_moves(file, &people);
-        self.check_unused(file);
-        self.check_titles(file);
-        self.check_places(&mut people);
-        if clock.is_err() || self.failed() {
-            self.keep_starts(people, sources);
-            return Err(Reported);
-        }
-        self.check_step(file, &people.agents);
-        let title = file
-            .items
-            .iter()
-            .find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
-        self.places = people.places;
-        Ok(Scenario {
-            title: title.unwrap_or_default(),
-            clock: self.clock,
-            horizon: self.horizon,
-            scene: self.scene.clone(),
-            agents: people.agents,
-            groups: people.groups,
-            moves,
-            processes,
-            behaviours,
-            sources,
-        })
-    }
-
-    /// A scenario has one title.
-    fn check_titles(&mut self, file: &ScenarioFile) {
-        let titles = file.items.iter().filter_map(|item| match item {
-            Item::Title(text) => Some(text.span),
-            _ => None,
-        });
-        let titles: Vec<Span> = titles.collect();
-        if let [first, others @ ..] = titles.as_slice() {
-            for other in others {
-                let error = error!(E0202, *other, "a scenario can have only one title");
-                self.note(error.related(*first, "first title").hint("remove one of them"));
-            }
-        }
-    }
-
-    /// Checks unused declarations as well.
-    fn check_unused(&mut self, file: &'a ScenarioFile) {
-        let locals = Locals::of(0);
-        for item in &file.items {
-            match item {
-                Item::Const { name, value } => {
-                    let lowered = self.lower_declared(name, value);
-                    let _ = self.unchanging(lowered, value);
-                }
-                Item::Param { name, value, range } => {
-                    let declared = self.lower_declared(name, value);
-                    if let Some(range) = range {
-                        self.check_range(name, (declared, value), range);
-                    }
-                }
-                Item::Kind(decl)
-                    if self.scopes[0].get(&decl.name.name).is_some_and(|e| e.span == decl.name.span) =>
-                {
-                    let _ = self.kind(&decl.name);
-                }
-                Item::Kind(decl) => {
-                    let _ = self.own_kind(decl);
-                }
-                Item::Let(decl) => {
-                    self.temporal = true;
-                    if decl.arguments.is_empty() {
-                        let _ = self.lower_declared(&decl.name, &decl.body);
-                    } else {
-                        self.look_into(decl, &locals);
-                    }
-                    self.temporal = false;
-                }
-                _ => {}
-            }
-        }
-    }
-
-    /// The range of a parameter, and whether its default lies in it.
-    fn check_range(
-        &mut self,
-        name: &Ident,
-        (declared, value): (Lowered<super::typed::Typed>, &Expr),
-        range: &(Expr, Expr),
-    ) {
-        let (locals, (low, high)) = (Locals::of(0), range);
-        if self.fault_of_default(name, value, range).is_some() {
-            return;
-        }
-        // What it is set to is judged where that is done.
-        let default = declared.and_then(|_| self.number(value, &locals));
-        let Ok(number) = default else {
-            let _ = (self.number(low, &locals), self.number(high, &locals));
-            return;
-        };
-        let place = low.span.to(high.span);
-        // A default that something else takes the place of need not lie in its range where one of them follows from what
-        // is set.
-        let is_replaced = self.settings.contains_key(&name.name)
-            && (self.hangs_on_parameters(place) || self.hangs_on_parameters(value.span));
-        let ends =
-            (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals));
-        let (Ok(low), Ok(high)) = ends else { return };
-        if low.value > high.value {
-            self.any_start = true;
-            self.note(error!(E0405, place, "the range is empty"));
-        } else if !is_replaced && (number.value < low.value || number.value > high.value) {
-            let text = format!("the default of `{}` is outside its range", name.name);
-            self.any_start = true;
-            self.note(error!(E0405, value.span, "{text}").hanging_on(place));
-        }
-    }
-
-    fn lower_declared(&mut self, name: &Ident, value: &Expr) -> Lowered<super::typed::Typed> {
-        let is_taken = self.scopes[0].get(&name.name).is_some_and(|entry| entry.span != name.span);
-        if is_taken || self.is_doubtful(0, &name.name) {
-            // It stands for something else, or who knows.
-            return self.lower(value, &Locals::of(0));
-        }
-        let expr = Expr { kind: ExprKind::Name(name.name.clone()), span: value.span };
-        self.lower(&expr, &Locals::of(0))
-    }
-
-    /// Settles the clock, and notes how much of it is certain.
-    fn settle_clock(&mut self, file: &'a ScenarioFile, told: &mut Told) -> Lowered<()> {
-        let mut found: [Option<(&Expr, Span)>; 2] = [None, None];
-        // What a slip of the pen was probably meant to set.
-        let mut meant = [false; 2];
-        let mut sure = [true; 2];
-        let mut failed = false;
-        for item in &file.items {
-            let Item::Setting { name, value } = item else { continue };
-            let slot = match name.name.as_str() {
-                "horizon" => 0,
-                "step" => 1,
-                _ => {
-                    let error = super::symbols::unknown(
-                        "setting",
-                        &name.name,
-                        name.span,
-                        Code::E0207,
-                        ["horizon", "step"].into_iter(),
-                    );
-                    let near = super::nearest::nearest(&name.name, ["horizon", "step"].into_iter());
-                    meant = [meant[0] || near == Some("horizon"), meant[1] || near == Some("step")];
-                    let general =
-                        "the settings of a scenario are `horizon` and `step`; a constant begins with `const`";
-                    let hint = match &error.hint {
-                        Some(near) => format!("{near} {general}"),
-                        None => general.to_owned(),
-                    };
-                    self.note(error.hint(hint));
-                    failed = true;
-                    continue;
-                }
-            };
-            if let Some((_, first)) = found[slot] {
-                let error =
-                    error!(E0202, name.span, "`{}` is set twice", name.name).related(first, "first set here");
-                self.note(error);
+                context.note(error.hint(hint));
                 failed = true;
+                continue;
             }
-            sure[slot] &= found[slot].is_none();
-            found[slot] = Some((value, name.span));
-            self.clock_at.push(value.span);
-        }
-        if file.items.is_empty() {
-            return Err(Reported);
-        }
-        let [horizon, step] = found;
-        let title = file.items.iter().find_map(|item| match item {
-            Item::Title(text) => Some(text.span),
-            _ => None,
-        });
-        let start = self.sources.first().map(|source| Span::new(source.id, 0, 0));
-        let place = title.or(start).unwrap_or_default();
-        let mut missing = Vec::new();
-        // Processes alone need no step: they have their own, or rates.
-        let free = step.is_none() && !self.processes.is_empty() && !told::has_bodies(file);
-        if !free {
-            // Should the step or the horizon be wrong: bounds in seconds still make sense.
-            self.clock = Clock::Stepped(Decimal::ONE);
-        }
-        if step.is_none() && !free && !meant[1] {
-            missing.push(("step", "0.02 s"));
-        }
-        if horizon.is_none() && !meant[0] {
-            missing.push(("horizon", "30 s"));
-        }
-        if !missing.is_empty() {
-            let names: Vec<&str> = missing.iter().map(|(name, _)| *name).collect();
-            let lines: Vec<String> =
-                missing.iter().map(|(name, value)| format!("`{name} = {value}`")).collect();
-            self.note(
-                error!(E0505, place, "the scenario has no {}", names.join(" and no ");
-                hint: "write {}", lines.join(" and "))
-                .about(About::Clock),
-            );
+        };
+        if let Some((_, first)) = found[slot] {
+            let error =
+                error!(E0202, name.span, "`{}` is set twice", name.name).related(first, "first set here");
+            context.note(error);
             failed = true;
         }
-        if free {
-            self.clock = Clock::Steps;
-            let Some((horizon, _)) = horizon else { return Err(Reported) };
-            if Self::has_timing(file) {
-                return self.settle_continuous(horizon, failed);
-            }
-            return self.settle_horizon(horizon, failed);
-        }
-        let Some((step, _)) = step else {
-            // What is wrong with the one that is there is said too.
-            let _ = horizon.map(|(horizon, _)| self.number_of(horizon, Dimension::TIME, &Locals::of(0)));
-            return Err(Reported);
-        };
-        let length = self.number_of(step, Dimension::TIME, &Locals::of(0));
-        let sure_step = sure[1] && !meant[1];
-        if (length.is_err() || !sure_step)
-            && let Some((horizon, _)) = horizon
-            && !self.text(horizon.span).contains("step")
-        {
-            // What is wrong with the horizon is said too.
-            let _ = self.number_of(horizon, Dimension::TIME, &Locals::of(0));
-        }
-        let Some(exact) = length?.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
-            return self.report(error!(E0505, step.span, "the step must be a positive time"));
-        };
-        self.clock = Clock::Stepped(exact);
-        if !sure_step {
-            return Err(Reported);
-        }
-        *told = Told::Step;
+        sure[slot] &= found[slot].is_none();
+        found[slot] = Some((value, name.span));
+        context.time.clock_at.push(value.span);
+    }
+    if file.items.is_empty() {
+        return Err(Reported);
+    }
+    let [horizon, step] = found;
+    let title = file.items.iter().find_map(|item| match item {
+        Item::Title(text) => Some(text.span),
+        _ => None,
+    });
+    let start = context.sources.first().map(|source| Span::new(source.id, 0, 0));
+    let place = title.or(start).unwrap_or_default();
+    let mut missing = Vec::new();
+    // Processes alone need no step: they have their own, or rates.
+    let free = step.is_none() && !context.processes.is_empty() && !clock::has_bodies(file);
+    if !free {
+        // Should the step or the horizon be wrong: bounds in seconds still make sense.
+        context.time.clock = Clock::Stepped(Decimal::ONE);
+    }
+    if step.is_none() && !free && !meant[1] {
+        missing.push(("step", "0.02 s"));
+    }
+    if horizon.is_none() && !meant[0] {
+        missing.push(("horizon", "30 s"));
+    }
+    if !missing.is_empty() {
+        let names: Vec<&str> = missing.iter().map(|(name, _)| *name).collect();
+        let lines: Vec<String> = missing.iter().map(|(name, value)| format!("`{name} = {value}`")).collect();
+        context.note(
+            error!(E0505, place, "the scenario has no {}", names.join(" and no ");
+                hint: "write {}", lines.join(" and "))
+            .about(About::Clock),
+        );
+        failed = true;
+    }
+    if free {
+        context.time.clock = Clock::Steps;
         let Some((horizon, _)) = horizon else { return Err(Reported) };
-        let settled = self.settle_horizon(horizon, failed);
-        // It was found, though something else is wrong.
-        if sure[0] && !meant[0] && self.horizon > Tick(0) {
-            *told = Told::Whole;
+        if process::has_timing(file) {
+            return settle_continuous(context, horizon, failed);
         }
-        settled
+        return settle_horizon(context, horizon, failed);
     }
-
-    /// Continuous time up to a horizon.
-    fn settle_continuous(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
-        let end = self.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
-        if end.value <= 0.0 {
-            return self.report(error!(E0505, horizon.span, "the horizon must be positive"));
-        }
-        let tick = moments::tick(end.exact, end.value, &self.measured);
-        let Some((tick, last)) = tick.and_then(|(tick, end)| Some((tick, end.div(tick)?.as_whole()?))) else {
-            return self.report(error!(E0501, horizon.span, "the time is out of range"));
-        };
-        self.clock = Clock::Jumps(tick);
-        self.horizon = Tick(last as u64);
-        if failed { Err(Reported) } else { Ok(()) }
+    let Some((step, _)) = step else {
+        // What is wrong with the one that is there is said too.
+        let _ = horizon.map(|(horizon, _)| context.number_of(horizon, Dimension::TIME, &Locals::of(0)));
+        return Err(Reported);
+    };
+    let length = context.number_of(step, Dimension::TIME, &Locals::of(0));
+    let sure_step = sure[1] && !meant[1];
+    if (length.is_err() || !sure_step)
+        && let Some((horizon, _)) = horizon
+        && !context.text(horizon.span).contains("step")
+    {
+        // What is wrong with the horizon is said too.
+        let _ = context.number_of(horizon, Dimension::TIME, &Locals::of(0));
     }
+    let Some(exact) = length?.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
+        return context.report(error!(E0505, step.span, "the step must be a positive time"));
+    };
+    context.time.clock = Clock::Stepped(exact);
+    if !sure_step {
+        return Err(Reported);
+    }
+    *told = Told::Step;
+    let Some((horizon, _)) = horizon else { return Err(Reported) };
+    let settled = settle_horizon(context, horizon, failed);
+    // It was found, though something else is wrong.
+    if sure[0] && !meant[0] && context.time.horizon > Tick(0) {
+        *told = Told::Whole;
+    }
+    settled
+}
 
-    fn settle_horizon(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
-        let end = self.time(horizon, &Locals::of(0))?;
-        match end {
-            Some(Tick(0)) => self.report(error!(E0505, horizon.span, "the horizon must be positive")),
-            Some(tick) if tick.0 <= MOST_TICKS => {
-                self.horizon = tick;
-                if failed { Err(Reported) } else { Ok(()) }
-            }
-            _ => self.report(error!(E0505, horizon.span, "a trial can have at most {MOST_TICKS} steps")),
+/// Continuous time up to a horizon.
+fn settle_continuous(context: &mut Context<'_>, horizon: &Expr, failed: bool) -> Lowered<()> {
+    let end = context.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
+    if end.value <= 0.0 {
+        return context.report(error!(E0505, horizon.span, "the horizon must be positive"));
+    }
+    let tick = moments::tick(end.exact, end.value, &context.time.measured);
+    let Some((tick, last)) = tick.and_then(|(tick, end)| Some((tick, end.div(tick)?.as_whole()?))) else {
+        return context.report(error!(E0501, horizon.span, "the time is out of range"));
+    };
+    context.time.clock = Clock::Jumps(tick);
+    context.time.horizon = Tick(last as u64);
+    if failed { Err(Reported) } else { Ok(()) }
+}
+
+fn settle_horizon(context: &mut Context<'_>, horizon: &Expr, failed: bool) -> Lowered<()> {
+    let end = context.time(horizon, &Locals::of(0))?;
+    match end {
+        Some(Tick(0)) => context.report(error!(E0505, horizon.span, "the horizon must be positive")),
+        Some(tick) if tick.0 <= MOST_TICKS => {
+            context.time.horizon = tick;
+            if failed { Err(Reported) } else { Ok(()) }
         }
+        _ => context.report(error!(E0505, horizon.span, "a trial can have at most {MOST_TICKS} steps")),
     }
 }

@@ -1,6 +1,7 @@
 //! How parameters, names, processes and behaviours were written, with their units, for `smc show`.
 
-use super::elaborator::Elaborator;
+use crate::compile::context::Context;
+use crate::compile::context::conducts::With;
 use crate::model::{AgentId, BehaviourId};
 use crate::syntax::ast::process::{BehaviourItem, ProcessDecl, ProcessItem, VarDecl};
 use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};
@@ -23,54 +24,66 @@ pub struct Written {
     pub arguments: Vec<Vec<String>>,
 }
 
-impl Elaborator<'_> {
-    /// How a scenario was written.
-    pub(super) fn written(&self, file: &ScenarioFile) -> Written {
-        let mut out = Written { with: self.written_with(), ..Written::default() };
-        for item in &file.items {
-            match item {
-                Item::Param { name, value, range } => {
-                    let range = range.as_ref().map_or(String::new(), |(low, high)| {
-                        format!(" in {} .. {}", self.text(low.span), self.text(high.span))
-                    });
-                    out.parameters.push(format!("{} = {}{range}", name.name, self.text(value.span)));
-                }
-                Item::Let(decl) => out.names.push(self.written_let(decl)),
-                Item::Process(decl) => out.processes.push(self.written_process(decl)),
-                Item::Behaviour(decl) => {
-                    out.arguments.push(decl.arguments.iter().map(|name| name.name.clone()).collect());
-                    let states = decl.items.iter().filter_map(|item| match item {
-                        BehaviourItem::State(state) => Some(state),
-                        _ => None,
-                    });
-                    let guards = states.flat_map(|state| &state.transitions).filter_map(|t| t.guard.as_ref());
-                    out.conditions.push(guards.map(|guard| self.text(guard.span)).collect());
-                }
-                _ => {}
+/// How a scenario was written.
+pub(crate) fn written(context: &Context<'_>, file: &ScenarioFile) -> Written {
+    let mut out = Written { with: written_with(context), ..Written::default() };
+    for item in &file.items {
+        match item {
+            Item::Param { name, value, range } => {
+                let range = range.as_ref().map_or(String::new(), |(low, high)| {
+                    format!(" in {} .. {}", context.text(low.span), context.text(high.span))
+                });
+                out.parameters.push(format!("{} = {}{range}", name.name, context.text(value.span)));
             }
+            Item::Let(decl) => out.names.push(written_let(context, decl)),
+            Item::Process(decl) => out.processes.push(written_process(context, decl)),
+            Item::Behaviour(decl) => {
+                out.arguments.push(decl.arguments.iter().map(|name| name.name.clone()).collect());
+                let states = decl.items.iter().filter_map(|item| match item {
+                    BehaviourItem::State(state) => Some(state),
+                    _ => None,
+                });
+                let guards = states.flat_map(|state| &state.transitions).filter_map(|t| t.guard.as_ref());
+                out.conditions.push(guards.map(|guard| context.text(guard.span)).collect());
+            }
+            _ => {}
         }
-        out
     }
+    out
+}
 
-    fn written_let(&self, decl: &LetDecl) -> String {
-        let arguments: Vec<&str> = decl.arguments.iter().map(|name| name.name.as_str()).collect();
-        let arguments =
-            if arguments.is_empty() { String::new() } else { format!("({})", arguments.join(", ")) };
-        format!("{}{arguments} = {}", decl.name.name, self.text(decl.body.span))
-    }
+fn written_let(context: &Context<'_>, decl: &LetDecl) -> String {
+    let arguments: Vec<&str> = decl.arguments.iter().map(|name| name.name.as_str()).collect();
+    let arguments = if arguments.is_empty() { String::new() } else { format!("({})", arguments.join(", ")) };
+    format!("{}{arguments} = {}", decl.name.name, context.text(decl.body.span))
+}
 
-    fn written_process(&self, decl: &ProcessDecl) -> (String, Vec<String>) {
-        let copies = |count: &Expr| format!("[{}]", self.text(count.span));
-        let head = format!("{}{}", decl.name.name, decl.count.as_ref().map_or(String::new(), copies));
-        let line = |item: &ProcessItem| match item {
-            ProcessItem::Var(VarDecl { name, initial, .. }) => {
-                format!("var {}", self.text(name.span.to(initial.span)))
-            }
-            ProcessItem::Let(decl) => format!("let {}", self.written_let(decl)),
-            ProcessItem::Label { name, value } => format!("label {} = {}", name.name, self.text(value.span)),
-            ProcessItem::Command(command) => self.text(command.span),
-            ProcessItem::Choose(_) => "choose".to_owned(),
-        };
-        (head, decl.items.iter().map(line).collect())
-    }
+fn written_process(context: &Context<'_>, decl: &ProcessDecl) -> (String, Vec<String>) {
+    let copies = |count: &Expr| format!("[{}]", context.text(count.span));
+    let head = format!("{}{}", decl.name.name, decl.count.as_ref().map_or(String::new(), copies));
+    let line = |item: &ProcessItem| match item {
+        ProcessItem::Var(VarDecl { name, initial, .. }) => {
+            format!("var {}", context.text(name.span.to(initial.span)))
+        }
+        ProcessItem::Let(decl) => format!("let {}", written_let(context, decl)),
+        ProcessItem::Label { name, value } => format!("label {} = {}", name.name, context.text(value.span)),
+        ProcessItem::Command(command) => context.text(command.span),
+        ProcessItem::Choose(_) => "choose".to_owned(),
+    };
+    (head, decl.items.iter().map(line).collect())
+}
+
+/// How each agent was given each of its behaviours.
+fn written_with<'a>(context: &Context<'a>) -> BTreeMap<(AgentId, BehaviourId), String> {
+    let each = |with: &With<'a>| {
+        let texts: Vec<_> =
+            with.behaviours.iter().map(|&(id, _, written)| (id, context.text(written.span))).collect();
+        let members = with.members.iter().copied();
+        members
+            .flat_map(|agent| {
+                texts.iter().map(move |(id, text)| ((agent, *id), text.clone())).collect::<Vec<_>>()
+            })
+            .collect::<Vec<_>>()
+    };
+    context.conducts.withs.iter().flat_map(each).collect()
 }

@@ -150,7 +150,7 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
                 reader.report(error!(E0723, request.span, "{title}").hint(FIT_AGAIN));
             }
         }
-        files.insert(request.path, contents);
+        files.provide(request.path, contents);
     }
     Parsed { inputs: reader.inputs, scenario, properties, settings, files, in_files, complete }
 }

@@ -127,6 +127,16 @@ pub enum Special {
     VoronoiDensity,
 }
 
+impl Special {
+    /// Whether the area of its region is a part of what it gives.
+    pub const fn needs_area(self) -> bool {
+        matches!(
+            self,
+            Self::Area | Self::Density | Self::LevelOfService | Self::MeanSpeed | Self::VoronoiDensity
+        )
+    }
+}
+
 /// The dimension of what a function gives, as far as its arguments tell it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {

@@ -182,7 +182,7 @@ fn without_tracks(input: &Input<'_>, tracks: &str) -> Files {
         if let Item::Tracks { name, file: Some((_, path)), .. } = item
             && name.name == tracks
         {
-            files.insert(path.value.clone(), Ok(Vec::new()));
+            files.provide(path.value.clone(), Ok(Vec::new()));
         }
     }
     files

@@ -36,7 +36,7 @@ pub(super) fn pairs() -> Vec<Pair> {
         for request in requests(&tree) {
             let found = std::fs::read(format!("{data}/{}", request.path)).map_err(|e| e.to_string());
             there &= found.is_ok();
-            files.insert(request.path, found);
+            files.provide(request.path, found);
         }
         if there {
             pairs.push(Pair { name, texts, files });

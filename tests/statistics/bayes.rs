@@ -56,7 +56,7 @@ fn t26_a_bayes_factor_bounds_no_error() {
 #[test]
 fn t26_nothing_of_the_kind_is_offered() {
     for file in [
-        "src/compile/methods.rs",
+        "src/compile/query/methods.rs",
         "src/engine/words.rs",
         "src/engine/procedure.rs",
         "src/stats/procedures/mod.rs",

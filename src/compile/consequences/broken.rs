@@ -1,8 +1,8 @@
 //! What could not be read, and which errors come of it.
 
-use super::{DIMENSION, LACKING, bare, block_end, leading_word, word, words};
-use crate::compile::queries::Input;
-use crate::compile::told::is_stepped;
+use crate::compile::consequences::{DIMENSION, LACKING, bare, block_end, leading_word, word, words};
+use crate::compile::context::clock::is_stepped;
+use crate::compile::query::compiler::Input;
 use crate::syntax::ast::{self, Item};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{About, Diagnostic, Severity};
@@ -35,7 +35,7 @@ const BODIES: [&str; 5] = ["agent", "agents", "group", "kind", "source"];
 
 /// The items of the sources that could not be read.
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
-pub(super) struct Broken<'i> {
+pub(crate) struct Broken<'i> {
     sources: &'i [Source],
     /// Their places, and those of the errors of the parser; ascending.
     spans: Vec<Span>,
@@ -61,7 +61,7 @@ pub(super) struct Broken<'i> {
 }
 
 impl<'i> Broken<'i> {
-    pub(super) fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
+    pub(crate) fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
         let errors = said.iter().filter(|one| one.severity == Severity::Error);
         let mut errors: Vec<Span> = errors.filter_map(|one| Some(one.place.as_ref()?.span)).collect();
         errors.sort_unstable();
@@ -134,11 +134,11 @@ impl<'i> Broken<'i> {
             let from = spans.partition_point(|span| (span.source, span.start) < (place.source, place.start));
             spans.get(from).is_some_and(|span| span.source == place.source && span.start < place.end)
         };
-        is_within(&self.spans) || is_within(&self.errors) || self.hold(place)
+        is_within(&self.spans) || is_within(&self.errors) || self.covers(place)
     }
 
     /// Whether a place lies in a broken item. Few of them hold others.
-    fn hold(&self, place: Span) -> bool {
+    fn covers(&self, place: Span) -> bool {
         let before =
             self.spans.partition_point(|span| (span.source, span.start) <= (place.source, place.start));
         let near = self.spans[..before].iter().rev().take(MOST_AROUND);
@@ -181,7 +181,7 @@ impl<'i> Broken<'i> {
     }
 
     /// Whether an error of compilation follows from nothing that could not be read.
-    pub(super) fn is_own(&self, one: &Diagnostic) -> bool {
+    pub(crate) fn is_own(&self, one: &Diagnostic) -> bool {
         let scenario = self.fails(SourceId(0));
         let Some(place) = one.place.as_ref().map(|place| place.span) else {
             return !(scenario && NAMES.contains(&one.code));
@@ -216,7 +216,7 @@ impl<'i> Broken<'i> {
             && words(text).any(|name| self.names.contains(name));
         // A command of several lines is judged as a whole.
         let of_part = one.code.is_of("E09") && self.meets(place);
-        let of_item = self.hold(place);
+        let of_item = self.covers(place);
         !(of_item
             || of_clock
             || of_options
@@ -237,7 +237,7 @@ fn kind_of(item: &Item) -> Option<(&str, (&str, Span))> {
 }
 
 /// The names that a word may have had behind it before it grew together with them: `n` of `varn`.
-pub(super) fn grown(text: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn grown(text: &str) -> impl Iterator<Item = &str> {
     let (first, _) = leading_word(text);
     let declaring = KEYWORDS.iter().filter(|keyword| keyword.declares != Declares::Nothing);
     let is_whole = keyword(first).is_some();

@@ -4,16 +4,18 @@
 //! rates seems to have none, moves have no options. Such errors would confuse, and disappear with the first one.
 //! An unknown name is not reported at each of its uses.
 
-mod broken;
+pub(crate) mod broken;
 
-use super::dimension;
-use super::queries::Input;
+use crate::compile::consequences::broken::Broken;
+use crate::compile::context::dependence::UNKNOWN;
+use crate::compile::dimension;
+use crate::compile::query::compiler::Input;
+
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{About, Diagnostic, Label, Severity};
 use crate::syntax::parse::{continues_name, starts_name};
 use crate::syntax::source::{Source, SourceId, Span};
-use broken::Broken;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
@@ -28,8 +30,6 @@ const UNKNOWN_UNIT: Code = Code::E0113;
 const DIMENSION: Code = Code::E0303;
 /// Code of a name that is used before it can be known.
 const EARLY: Code = Code::E0205;
-/// Codes of unknown names, reported once.
-pub(super) const UNKNOWN: [Code; 4] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210];
 /// Most further places that are marked.
 const MOST_MARKS: usize = 3;
 
@@ -266,7 +266,7 @@ fn leading_word(text: &str) -> (&str, &str) {
 }
 
 /// The words of a text.
-pub(super) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
+pub(crate) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
     text.split(|c: char| !continues_name(c)).filter(|word| !word.is_empty())
 }
 

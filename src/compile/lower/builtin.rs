@@ -1,7 +1,7 @@
 //! Names that stand for something: distributions, values and operators. Functions are in `model::function`.
 
 /// Distributions: they are values of fields, not of expressions.
-pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
+pub(crate) const DISTRIBUTIONS: [&str; 11] = [
     "normal",
     "lognormal",
     "uniform",
@@ -16,7 +16,7 @@ pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
 ];
 
 /// Names that stand for something unless they are declared.
-pub(in crate::compile) const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
+pub(crate) const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
 
 /// Operators of property files that a scenario may use as names.
-pub(in crate::compile) const OPERATORS: [&str; 6] = ["F", "G", "X", "U", "W", "R"];
+pub(crate) const OPERATORS: [&str; 6] = ["F", "G", "X", "U", "W", "R"];

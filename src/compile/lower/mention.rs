@@ -1,21 +1,19 @@
 //! Whether an expression looks at more than one state, before it is lowered.
 
-use super::super::elaborator::{Elaborator, Locals};
-use super::super::symbols::{Meaning, ScopeId};
-use super::super::typed::Typed;
+use crate::compile::context::symbols::{Meaning, ScopeId};
+use crate::compile::context::typed::Typed;
+use crate::compile::context::{Context, Locals};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use std::collections::BTreeSet;
 
 /// How deep expressions are looked into; what nests deeper is refused when it is lowered.
 const DEEPEST: u32 = 1000;
 
-impl Elaborator<'_> {
-    /// Whether the body of a quantifier looks at more than one state. Names are followed to what they stand for.
-    pub(super) fn mentions_time(&self, body: &Expr, locals: &Locals, variable: &Ident) -> bool {
-        let hidden = vec![variable.name.as_str()];
-        Search { elaborator: self, followed: BTreeSet::new(), depth: 0 }
-            .expr(body, &Names { locals: Some(locals), hidden, scope: locals.scope })
-    }
+/// Whether the body of a quantifier looks at more than one state. Names are followed to what they stand for.
+pub(crate) fn mentions_time(context: &Context<'_>, body: &Expr, locals: &Locals, variable: &Ident) -> bool {
+    let hidden = vec![variable.name.as_str()];
+    Search { context: context, followed: BTreeSet::new(), depth: 0 }
+        .expr(body, &Names { locals: Some(locals), hidden, scope: locals.scope })
 }
 
 /// The names that can be said at some place.
@@ -28,7 +26,7 @@ struct Names<'n> {
 }
 
 struct Search<'e, 'a> {
-    elaborator: &'e Elaborator<'a>,
+    context: &'e Context<'a>,
     /// Names that were followed; where one of them mentions time the search is over.
     followed: BTreeSet<(ScopeId, String)>,
     depth: u32,
@@ -55,9 +53,9 @@ impl Search<'_, '_> {
             | ExprKind::Broken
             | ExprKind::Bool(_)
             | ExprKind::Text(_) => false,
-            ExprKind::Name(name) => self.name(name, names),
+            ExprKind::Name(name) => self.named(name, names),
             ExprKind::Call { function, arguments } => {
-                let known = self.elaborator.find(&function.name, names.scope).is_some();
+                let known = self.context.look_up(&function.name, names.scope).is_some();
                 (function.name == "time_until" && !known)
                     || arguments.iter().any(|argument| self.expr(argument, names))
                     || self.follow(&function.name, names.scope)
@@ -73,7 +71,7 @@ impl Search<'_, '_> {
         }
     }
 
-    fn name(&mut self, name: &str, names: &Names<'_>) -> bool {
+    fn named(&mut self, name: &str, names: &Names<'_>) -> bool {
         if names.hidden.contains(&name) {
             return false;
         }
@@ -88,7 +86,7 @@ impl Search<'_, '_> {
 
     /// What a declared name stands for, with its arguments hidden.
     fn follow(&mut self, name: &str, scope: ScopeId) -> bool {
-        let (scope, body, arguments) = match self.elaborator.find(name, scope) {
+        let (scope, body, arguments) = match self.context.look_up(name, scope) {
             Some((scope, Meaning::Let(decl))) => (scope, &decl.body, decl.arguments.as_slice()),
             Some((scope, Meaning::Property(body))) => (scope, body, &[][..]),
             _ => return false,

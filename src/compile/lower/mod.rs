@@ -1,48 +1,67 @@
 //! Lowering of expressions: names, units and types are settled, sugar is gone.
 
-mod arithmetic;
-mod builtin;
-mod call;
-mod gist;
-mod legs;
-mod logic;
-mod mention;
-mod misread;
-mod name;
-mod quantifier;
-mod select;
-mod tally;
-mod temporal;
-mod traffic;
+pub(crate) mod arithmetic;
+pub(crate) mod builtin;
+pub(crate) mod call;
+pub(crate) mod call_arguments;
+pub(crate) mod convert;
+pub(crate) mod defaults;
+pub(crate) mod depth;
+pub(crate) mod expanding;
+pub(crate) mod form;
+pub(crate) mod function;
+pub(crate) mod laws;
+pub(crate) mod legs;
+pub(crate) mod logic;
+pub mod margin;
+pub(crate) mod margins;
+pub(crate) mod mention;
+pub(crate) mod misspelt;
+pub(crate) mod modes;
+pub(crate) mod name;
+pub(crate) mod observing;
+pub(crate) mod process_names;
+pub(crate) mod quantifier;
+pub(crate) mod robustness;
+pub(crate) mod select;
+pub(crate) mod shapes;
+pub(crate) mod tally;
+pub(crate) mod temporal;
+pub(crate) mod times;
+pub(crate) mod traffic;
+pub(crate) mod weight;
 
-pub(super) use builtin::{BUILT_IN, DISTRIBUTIONS, OPERATORS};
-pub(super) use logic::relation;
+use crate::base::tick::Tick;
+use crate::compile::context::number::Number;
+use crate::compile::context::parts::{Form, Part};
+use crate::compile::context::phrase;
+use crate::compile::context::typed::Typed;
+use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::dimension;
+use crate::compile::dimension::Dimension;
+use crate::logic::Window;
+use crate::syntax::ast::BinaryOp;
+use crate::syntax::ast::Bound;
 
-use super::dimension::{self, Dimension};
-use super::elaborator::{Elaborator, Locals, Lowered, MOST_NODES, Reported};
-use super::number::Number;
-use super::study::{Form, Part};
-use super::typed::Typed;
-use super::weight::Weight;
-use crate::logic::{Node, NodeId, TermId};
-use crate::model::{Axis, Bool, Num, Place, Set, Who};
+use crate::logic::NodeId;
+use crate::model::Bool;
 use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
-impl Elaborator<'_> {
+impl Context<'_> {
     /// What an expression means.
-    pub(super) fn lower(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {
+    pub(crate) fn lower(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {
         self.descend(expr.span)?;
-        let around = std::mem::replace(&mut self.frame, locals.frame.clone());
+        let around = std::mem::replace(&mut self.words.frame, locals.frame.clone());
         let lowered = match self.lower_kind(expr, locals) {
             Ok(Typed::Truth(truth, phrase)) if self.temporal => {
                 Ok(self.phrased(expr, (truth, phrase), locals))
             }
             other => other,
         };
-        self.frame = around;
-        self.depth -= 1;
+        self.words.frame = around;
+        self.extent.depth -= 1;
         lowered
     }
 
@@ -50,7 +69,7 @@ impl Elaborator<'_> {
     fn phrased(&mut self, expr: &Expr, (truth, phrase): (Bool, Option<Arc<Part>>), locals: &Locals) -> Typed {
         let phrase = match (matches!(truth, Bool::Constant(_)), phrase, &expr.kind) {
             (true, ..) => None,
-            (false, None, _) => self.phrase(expr.span, Form::Plain(truth.clone())),
+            (false, None, _) => phrase::phrase(self, expr.span, Form::Plain(truth.clone())),
             // An argument is what it stands for.
             (false, Some(inner), ExprKind::Name(name))
                 if locals.names.iter().any(|(bound, _)| bound == name) =>
@@ -58,15 +77,32 @@ impl Elaborator<'_> {
                 Some(inner)
             }
             (false, Some(inner), ExprKind::Name(_) | ExprKind::Call { .. } | ExprKind::Member(..)) => {
-                self.phrase(expr.span, Form::Named(inner))
+                phrase::phrase(self, expr.span, Form::Named(inner))
             }
             (false, phrase, _) => phrase,
         };
         Typed::Truth(truth, phrase)
     }
 
+    /// A number known at compile time, of a given dimension.
+    pub(crate) fn number_of(
+        &mut self,
+        expr: &Expr,
+        dimension: Dimension,
+        locals: &Locals,
+    ) -> Lowered<Number> {
+        let typed = self.lower(expr, locals)?;
+        self.as_known_of(typed, expr.span, dimension)
+    }
+
+    /// A number known at compile time.
+    pub(crate) fn number(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Number> {
+        let typed = self.lower(expr, locals)?;
+        self.as_known(typed, expr.span)
+    }
+
     /// What some expressions mean. What is wrong with each is said.
-    pub(in crate::compile) fn lower_all<'e>(
+    pub(crate) fn lower_all<'e>(
         &mut self,
         exprs: impl IntoIterator<Item = &'e Expr>,
         locals: &Locals,
@@ -91,20 +127,18 @@ impl Elaborator<'_> {
             ExprKind::Broken => Err(Reported),
             ExprKind::Bool(value) => Ok(Typed::truth(Bool::Constant(*value))),
             ExprKind::Text(text) => Ok(Typed::Text(text.clone())),
-            ExprKind::Name(name) => self.lower_name(name, expr.span, locals),
+            ExprKind::Name(name) => name::lower_name(self, name, expr.span, locals),
             ExprKind::Member(base, field)
                 if matches!(field.name.as_str(), "x" | "y") && !matches!(base.kind, ExprKind::Name(_)) =>
             {
                 let typed = self.lower(base, locals)?;
-                // A variable of a process may be called so.
-                if let Typed::Process { .. } | Typed::Processes(_) = typed {
-                    return self.lower_member(base, field, locals);
-                }
-                // So may a behaviour.
-                if matches!(typed, Typed::Agent(_))
-                    && self.behaviours.iter().any(|decl| decl.name.name == field.name)
+                // A variable of a process may be called so, and so may a behaviour.
+                let is_behaviour =
+                    || self.conducts.behaviours.iter().any(|decl| decl.name.name == field.name);
+                if matches!(typed, Typed::Process { .. } | Typed::Processes(_))
+                    || matches!(typed, Typed::Agent(_)) && is_behaviour()
                 {
-                    return self.lower_member(base, field, locals);
+                    return name::lower_member(self, base, field, locals);
                 }
                 if let Typed::Point(x, y) = typed {
                     return Ok(Typed::Number(if field.name == "x" { x } else { y }));
@@ -112,24 +146,42 @@ impl Elaborator<'_> {
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;
                 Ok(Typed::Num(if field.name == "x" { x } else { y }, dimension))
             }
-            ExprKind::Member(base, member) => self.lower_member(base, member, locals),
-            ExprKind::Index(base, index) => self.lower_index(base, index, locals),
-            ExprKind::Call { function, arguments } => self.lower_call(expr, function, arguments, locals),
+            ExprKind::Member(base, member) => name::lower_member(self, base, member, locals),
+            ExprKind::Index(base, index) => name::lower_index(self, base, index, locals),
+            ExprKind::Call { function, arguments } => {
+                call::lower_call(self, expr, function, arguments, locals)
+            }
             ExprKind::Point { x, y, unit } => self.lower_point(x, y, unit.as_ref(), locals),
-            ExprKind::Unary(UnaryOp::Minus, operand) => self.lower_minus(operand, locals),
-            ExprKind::Unary(UnaryOp::Not, operand) => self.lower_not(expr.span, operand, locals),
+            ExprKind::Unary(UnaryOp::Minus, operand) => {
+                let typed = self.lower(operand, locals)?;
+                arithmetic::minus(self, typed, operand.span)
+            }
+            ExprKind::Unary(UnaryOp::Not, operand) => {
+                let typed = self.lower(operand, locals)?;
+                logic::not(self, expr.span, typed, operand.span)
+            }
             ExprKind::Binary(op, left, right) => self.lower_binary(expr, *op, left, right, locals),
             ExprKind::Quantified { quantifier, variable, set, body } => {
-                self.lower_quantified(expr.span, *quantifier, variable, set, body, locals)
+                quantifier::lower_quantified(self, expr.span, *quantifier, variable, set, body, locals)
             }
             ExprKind::Temporal(op, bound, body) => {
-                self.lower_temporal(expr.span, *op, bound.as_ref(), body, locals)
+                temporal::check_allowed(self, expr.span, locals)?;
+                let window = self.window(bound.as_ref(), body, locals);
+                let operand = self.operand(body, locals);
+                temporal::operator(self, (expr.span, *op), (bound.as_ref(), window?), operand?)
             }
             ExprKind::TemporalPair(op, bound, left, right) => {
-                self.lower_temporal_pair(expr.span, *op, bound.as_ref(), left, right, locals)
+                temporal::check_allowed(self, expr.span, locals)?;
+                let window = self.window(bound.as_ref(), right, locals);
+                let sides = (self.operand(left, locals), self.operand(right, locals));
+                Ok(temporal::pair(self, *op, window?, (sides.0?, sides.1?)))
             }
             ExprKind::Window(aggregate, bound, body) => {
-                self.lower_window(expr.span, *aggregate, bound, body, locals)
+                temporal::check_allowed(self, expr.span, locals)?;
+                temporal::check_aggregate(self, expr.span, *aggregate)?;
+                let window = self.window(Some(bound), body, locals);
+                let typed = self.lower(body, locals)?;
+                temporal::aggregated(self, *aggregate, window, (typed, body.span))
             }
             ExprKind::At(inner, moment) => {
                 let is_number = matches!(
@@ -137,7 +189,7 @@ impl Elaborator<'_> {
                     ExprKind::Call { .. } | ExprKind::Member(..) | ExprKind::Name(_) | ExprKind::Quantity(_)
                 );
                 let read = Some(self.text(inner.span)).filter(|_| !is_number);
-                self.misplaced_moment((expr.span, inner.span), read.as_deref(), moment)
+                misspelt::misplaced_moment(self, (expr.span, inner.span), read.as_deref(), moment)
             }
         }
     }
@@ -197,168 +249,94 @@ impl Elaborator<'_> {
         self.wrong_dimension(wrong.0, right.1, wrong.1)
     }
 
-    /// A number of one state.
-    pub(super) fn as_num(&mut self, typed: Typed, span: Span) -> Lowered<(Num, Dimension)> {
-        match typed {
-            Typed::Number(number) => Ok((Num::Constant(number.value), number.dimension)),
-            Typed::Num(num, dimension) => Ok((num, dimension)),
-            Typed::Tally(_) => self.report(
-                error!(E0504, span, "a count of temporal formulas can only be compared with a number";
-                    hint: "write for example `count(a in crowd: F<=5 s (a in exit)) >= 3`"),
-            ),
-            Typed::Term(..) => self.report(error!(
-                E0504,
-                span, "a value of one state is needed here, not an aggregate over time"
-            )),
-            found => self.mismatch(span, "a number", &found),
-        }
+    /// A time as ticks; `None` for infinity.
+    pub(crate) fn time(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Option<Tick>> {
+        let typed = self.lower(expr, locals)?;
+        times::as_time(self, typed, expr.span)
     }
 
-    /// A number of the states from the present one on.
-    pub(super) fn as_term(&mut self, typed: Typed, span: Span) -> Lowered<(TermId, Dimension)> {
-        match typed {
-            Typed::Term(term, dimension) => Ok((term, dimension)),
-            other => {
-                let (num, dimension) = self.as_num(other, span)?;
-                Ok((self.signal(num, dimension, span), dimension))
+    /// The window of a bound, behind which `body` stands.
+    fn window(&mut self, bound: Option<&Bound>, body: &Expr, locals: &Locals) -> Lowered<Window> {
+        match bound {
+            None => Ok(temporal::ALWAYS),
+            Some(Bound::AtMost(end)) if misspelt::misread_bound(self, end, body, locals) => Err(Reported),
+            Some(Bound::AtMost(end)) => Ok(Window { from: Tick(0), to: self.time(end, locals)? }),
+            Some(Bound::Interval(start, end)) => {
+                let ends = (self.time(start, locals), self.time(end, locals));
+                temporal::interval(self, ends, (start.span, end.span))
             }
         }
     }
 
-    /// A formula.
-    pub(super) fn as_formula(&mut self, typed: Typed, span: Span) -> Lowered<NodeId> {
-        match typed {
-            Typed::Formula(node) => Ok(node),
-            Typed::Truth(truth, phrase) => Ok(self.atom(truth, span, phrase.as_ref())),
-            found => self.mismatch(span, "a condition", &found),
+    fn operand(&mut self, body: &Expr, locals: &Locals) -> Lowered<NodeId> {
+        let typed = self.lower(body, locals)?;
+        self.as_formula(typed, body.span)
+    }
+
+    fn lower_binary(
+        &mut self,
+        expr: &Expr,
+        op: BinaryOp,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        match op {
+            BinaryOp::Power => {
+                let sides = (self.lower(right, locals), self.lower(left, locals));
+                let (exponent, base) = (sides.0?, sides.1?);
+                arithmetic::raised(self, expr.span, (base, left), (exponent, right))
+            }
+            BinaryOp::Plus | BinaryOp::Minus | BinaryOp::Times | BinaryOp::Over => {
+                let is_over_product =
+                    op == BinaryOp::Over && matches!(right.kind, ExprKind::Binary(BinaryOp::Times, ..));
+                if is_over_product && misspelt::misread_factors(self, left, right, locals) {
+                    return Err(Reported);
+                }
+                let sides = (self.lower(left, locals), self.lower(right, locals));
+                arithmetic::combined(self, (expr.span, op), (left, sides.0), (right, sides.1), locals)
+            }
+            BinaryOp::In => {
+                margins::note_margin(self, Dimension::LENGTH, left.span.to(right.span));
+                let sides = (self.lower(left, locals), self.lower(right, locals));
+                logic::membership(self, (sides.0?, left.span), (sides.1?, right.span))
+            }
+            BinaryOp::And | BinaryOp::Or | BinaryOp::Implies | BinaryOp::Iff => {
+                let sides = (self.lower(left, locals), self.lower(right, locals));
+                logic::connect(self, (op, expr.span), (sides.0?, left.span), (sides.1?, right.span), locals)
+            }
+            _ => self.lower_comparison(op, left, right, locals),
         }
     }
 
-    /// A formula as a truth value of one state, if it joins nothing but such values: implications are formulas, so
-    /// that monitors see them, wherever they stand. `room` is left for so many parts: shared ones are written out.
-    /// `size` counts what their conditions are made of.
-    fn of_one_state(&self, node: NodeId, room: &mut u32, size: &mut u64) -> Option<Bool> {
-        *room = room.checked_sub(1)?;
-        let mut parts = |parts: &[NodeId]| -> Option<Vec<Bool>> {
-            parts.iter().map(|part| self.of_one_state(*part, room, size)).collect()
-        };
-        Some(match &self.tree.nodes[node.0 as usize] {
-            Node::Constant(value) => Bool::Constant(*value),
-            Node::Atom(atom) => {
-                let truth = &self.atoms[atom.0 as usize];
-                *size += Weight::of_truth(truth).nodes();
-                if *size > MOST_NODES {
-                    return None;
-                }
-                truth.clone()
+    fn lower_comparison(
+        &mut self,
+        op: BinaryOp,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        if let Some(behaviour) = modes::compared(self, op, left) {
+            let mode = self.lower(left, locals);
+            if let Some(compared) = modes::is_in_state(self, op, behaviour, mode, right) {
+                return compared;
             }
-            Node::Not(part) => Bool::Not(Box::new(self.of_one_state(*part, room, size)?)),
-            Node::And(all) => Bool::And(parts(all)?),
-            Node::Or(all) => Bool::Or(parts(all)?),
-            _ => return None,
-        })
-    }
-
-    /// A truth value of one state.
-    pub(super) fn as_truth(&mut self, typed: Typed, span: Span) -> Lowered<Bool> {
-        match typed {
-            Typed::Truth(truth, _) => Ok(truth),
-            Typed::Formula(node) => {
-                let mut size = 0;
-                let written = self.of_one_state(node, &mut 10_000, &mut size);
-                self.nodes = self.nodes.saturating_add(size);
-                if self.nodes > MOST_NODES {
-                    return self.too_large(span);
-                }
-                if let Some(truth) = written {
-                    return Ok(truth);
-                }
-                self.report(error!(
-                    E0504,
-                    span, "a condition of one state is needed here, not a temporal formula"
-                ))
-            }
-            found => self.mismatch(span, "a condition", &found),
         }
-    }
-
-    /// One agent.
-    pub(super) fn as_agent(&mut self, typed: Typed, span: Span) -> Lowered<Who> {
-        match typed {
-            Typed::Agent(who) => Ok(who),
-            Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Who::Agent(set.members[0])),
-            found @ Typed::Agents { .. } => self
-                .report(error!(E0305, span, "expected an agent, found {}", found.noun();
-                    hint: "choose a member such as `crowd[1]`, or quantify: `forall a in crowd: …`")),
-            found => self.mismatch(span, "an agent", &found),
+        if let Some(misread) = misspelt::misread_comparison(self, left, right, locals) {
+            return misread;
         }
-    }
-
-    /// A set of agents.
-    pub(super) fn as_set(&mut self, typed: Typed, span: Span) -> Lowered<Set> {
-        match typed {
-            Typed::Agents { set, .. } => Ok(set),
-            Typed::Agent(Who::Agent(id)) => Ok(Set { members: [id].into(), except: None }),
-            found => self.mismatch(span, "a set of agents", &found),
-        }
-    }
-
-    /// Something with a distance.
-    pub(super) fn as_place(&mut self, typed: Typed, span: Span) -> Lowered<Place> {
-        match typed {
-            Typed::Agent(who) => Ok(Place::Agent(who)),
-            Typed::Agents { set, particle: true } if set.members.len() == 1 => {
-                Ok(Place::Agent(Who::Agent(set.members[0])))
-            }
-            Typed::Region(id) => Ok(Place::Region(id)),
-            Typed::Barrier(id) => Ok(Place::Barrier(id)),
-            Typed::Point(x, y) => {
-                if x.dimension != Dimension::LENGTH {
-                    return self.wrong_dimension(span, Dimension::LENGTH, x.dimension);
-                }
-                Ok(Place::Point(Box::new(Num::Constant(x.value)), Box::new(Num::Constant(y.value))))
-            }
-            Typed::Vector(x, y, dimension) => {
-                if dimension != Dimension::LENGTH {
-                    return self.wrong_dimension(span, Dimension::LENGTH, dimension);
-                }
-                // Keep centroids and agents recognisable: they have fast instructions.
-                if let (Num::Coordinate(Axis::X, a), Num::Coordinate(Axis::Y, b)) = (&x, &y)
-                    && a == b
-                {
-                    return Ok(a.clone());
-                }
-                Ok(Place::Point(Box::new(x), Box::new(y)))
-            }
-            found @ Typed::Agents { .. } => {
-                let error = error!(E0305, span, "expected a place, found {}", found.noun();
-                        hint: "use `centroid(…)` or a member");
-                self.report(error)
-            }
-            found => self.mismatch(span, "a place: an agent, point, region or wall", &found),
-        }
-    }
-
-    /// The coordinates of something that has them.
-    pub(super) fn as_vector(&mut self, typed: Typed, span: Span) -> Lowered<(Num, Num, Dimension)> {
-        match typed {
-            Typed::Vector(x, y, dimension) => Ok((x, y, dimension)),
-            Typed::Point(x, y) => Ok((Num::Constant(x.value), Num::Constant(y.value), x.dimension)),
-            other => match self.as_place(other, span)? {
-                place @ (Place::Agent(_) | Place::Centroid(_)) => {
-                    let (x, y) = coordinates(place);
-                    Ok((x, y, Dimension::LENGTH))
-                }
-                Place::Point(x, y) => Ok((*x, *y, Dimension::LENGTH)),
-                Place::Region(_) | Place::Barrier(_) => {
-                    self.report(error!(E0305, span, "a region or an obstacle has no single position"))
-                }
-            },
-        }
+        let sides = inside_a_number(self, |this| {
+            let a = this.lower(left, locals);
+            // `a.phone == looking` without such a behaviour: the state is unknown with it.
+            let state = matches!(op, BinaryOp::Equal | BinaryOp::Unequal)
+                && matches!((&left.kind, &right.kind), (ExprKind::Member(..), ExprKind::Name(_)));
+            if a.is_err() && state { (a, Err(Reported)) } else { (a, this.lower(right, locals)) }
+        });
+        logic::compared(self, op, (left, sides.0), (right, sides.1), locals)
     }
 
     /// Reports a wrong number of arguments. They are looked at all the same.
-    pub(in crate::compile) fn arity<T>(
+    pub(crate) fn arity<T>(
         &mut self,
         function: &Ident,
         span: Span,
@@ -378,12 +356,19 @@ impl Elaborator<'_> {
     }
 }
 
-/// Some number of arguments, as one says it.
-pub(in crate::compile) fn counted_arguments(count: usize) -> String {
-    format!("{count} argument{}", if count == 1 { "" } else { "s" })
+/// Lowers numbers: conditions inside them (of a count, of an `if`) are no conditions of the formula.
+fn inside_a_number<'a, T>(context: &mut Context<'a>, lower: impl FnOnce(&mut Context<'a>) -> T) -> T {
+    if let Some(margins) = &mut context.margins {
+        margins.inside += 1;
+    }
+    let lowered = lower(context);
+    if let Some(margins) = &mut context.margins {
+        margins.inside -= 1;
+    }
+    lowered
 }
 
-/// The coordinates of an agent or centroid.
-pub(super) fn coordinates(place: Place) -> (Num, Num) {
-    (Num::Coordinate(Axis::X, place.clone()), Num::Coordinate(Axis::Y, place))
+/// Some number of arguments, as one says it.
+pub(crate) fn counted_arguments(count: usize) -> String {
+    format!("{count} argument{}", if count == 1 { "" } else { "s" })
 }

@@ -3,41 +3,41 @@
 //! Only a process itself sets its variables, and no process waits for another. So an error in one says nothing about
 //! those that read nothing of it, and processes that read nothing of each other can be looked at one after the other.
 
-use super::reachable::Lines;
+use crate::compile::process::reachable::Lines;
 use crate::model::{Process, Processes, Timing, VariableId};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// How a process is written.
-pub(super) struct Writing {
+pub(crate) struct Writing {
     /// Its commands.
-    pub(super) lines: Vec<Lines>,
+    pub(crate) lines: Vec<Lines>,
     /// Its variables.
-    pub(super) variables: Range<usize>,
+    pub(crate) variables: Range<usize>,
     /// Whether nothing is wrong with it.
-    pub(super) is_sound: bool,
+    pub(crate) is_sound: bool,
 }
 
 /// Processes that hang together.
-pub(super) struct Part<'p> {
+pub(crate) struct Part<'p> {
     /// These, and how they are written.
-    pub(super) members: Vec<(&'p Process, &'p Writing)>,
+    pub(crate) members: Vec<(&'p Process, &'p Writing)>,
     /// Their variables, ascending.
-    pub(super) variables: Vec<usize>,
+    pub(crate) variables: Vec<usize>,
 }
 
 /// Which processes are looked at.
 #[derive(Clone, Copy)]
-pub(super) struct Scope {
+pub(crate) struct Scope {
     /// Whether commands have rates.
-    pub(super) jumps: bool,
+    pub(crate) jumps: bool,
     /// Whether only those that read nothing but variables.
-    pub(super) closed: bool,
+    pub(crate) closed: bool,
 }
 
 impl<'p> Part<'p> {
     /// The parts of all processes.
-    pub(super) fn of(processes: &'p Processes, writings: &'p [Writing], scope: Scope) -> Vec<Self> {
+    pub(crate) fn of(processes: &'p Processes, writings: &'p [Writing], scope: Scope) -> Vec<Self> {
         let owned = |w: &Writing| w.variables.clone();
         let mut owners: Vec<Option<usize>> = vec![None; processes.variables.len()];
         for (process, writing) in writings.iter().enumerate() {
@@ -77,7 +77,7 @@ impl<'p> Part<'p> {
         }
         let mut parts: Vec<(usize, Self)> = Vec::new();
         for process in (0..reads.len()).filter(|process| known[*process]) {
-            let group = groups.first(process);
+            let group = groups.root_of(process);
             // A group is called by its first.
             let at = parts.binary_search_by_key(&group, |(first, _)| *first).unwrap_or_else(|at| {
                 parts.insert(at, (group, Part { members: Vec::new(), variables: Vec::new() }));
@@ -115,7 +115,7 @@ fn known(reads: &[Option<BTreeSet<usize>>]) -> Vec<bool> {
 struct Groups(Vec<usize>);
 
 impl Groups {
-    fn first(&mut self, mut member: usize) -> usize {
+    fn root_of(&mut self, mut member: usize) -> usize {
         while self.0[member] != member {
             self.0[member] = self.0[self.0[member]];
             member = self.0[member];
@@ -124,7 +124,7 @@ impl Groups {
     }
 
     fn join(&mut self, one: usize, other: usize) {
-        let (one, other) = (self.first(one), self.first(other));
+        let (one, other) = (self.root_of(one), self.root_of(other));
         let (least, greatest) = (one.min(other), one.max(other));
         self.0[greatest] = least;
     }
@@ -150,7 +150,7 @@ mod tests {
         groups.join(5, 3);
         groups.join(1, 5);
         groups.join(4, 2);
-        let firsts: Vec<usize> = (0..6).map(|member| groups.first(member)).collect();
+        let firsts: Vec<usize> = (0..6).map(|member| groups.root_of(member)).collect();
         assert_eq!(firsts, [0, 1, 2, 1, 2, 1]);
     }
 }

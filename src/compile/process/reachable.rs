@@ -5,14 +5,14 @@
 //! what is wrong with one hides nothing of another. Where there are too many states, or agents or delays come in, errors
 //! show while running.
 
-use super::super::consequences::words;
-use super::super::elaborator::Elaborator;
-use super::super::told::Told;
-use super::super::weight::Weight;
-use super::parts::{Part, Scope, Writing};
 use crate::base::tick::Clock;
+use crate::compile::context::Context;
+use crate::compile::context::clock::Told;
+use crate::compile::lower::weight::Weight;
+use crate::compile::process::parts::{Part, Scope, Writing};
 use crate::model::process::wrong_weights;
 use crate::model::{Command, Domain, Process, Processes, Timing, Variable, VariableId};
+use crate::syntax::ast::Broken;
 use crate::syntax::ast::process as ast;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -33,8 +33,8 @@ const LOOKS_OF_SUCCESSOR: u64 = 16;
 const MOST_SHOWN: usize = 8;
 
 /// Where a command and its updates are written.
-pub(super) struct Lines {
-    pub(super) command: Span,
+pub(crate) struct Lines {
+    pub(crate) command: Span,
     /// Of each branch.
     updates: Vec<Vec<Span>>,
     /// Whether its rate or its branches have an error, so its successor states are unknown.
@@ -42,7 +42,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    pub(super) fn of(command: &ast::Command) -> Self {
+    pub(crate) fn of(command: &ast::Command) -> Self {
         let updates = |branch: &ast::Branch| {
             branch.updates.iter().map(|update| update.target.span.to(update.value.span)).collect()
         };
@@ -53,7 +53,7 @@ impl Lines {
         }
     }
 
-    pub(super) fn broken(command: &ast::Command) -> Self {
+    pub(crate) fn broken(command: &ast::Command) -> Self {
         Self { is_broken: true, ..Self::of(command) }
     }
 }
@@ -89,49 +89,44 @@ impl Findings<'_> {
     }
 }
 
-impl Elaborator<'_> {
-    /// Reports what goes wrong in some state that can be reached. On that way a trial ends: what could follow is not
-    /// looked at.
-    pub(super) fn check_reachable(&mut self, processes: &Processes, writings: &[Writing]) {
-        if self.told < Told::Whole || self.may_race() {
-            return;
+/// Reports what goes wrong in some state that can be reached. On that way a trial ends: what could follow is not
+/// looked at.
+pub(crate) fn check_reachable(context: &mut Context<'_>, processes: &Processes, writings: &[Writing]) {
+    if context.sink.told < Told::Whole || may_race(context) {
+        return;
+    }
+    let mut findings = Findings { variables: &processes.variables, known: BTreeSet::new(), list: Vec::new() };
+    let mut looks = MOST_LOOKS;
+    // A part reads no variables but its own, which each of its states sets.
+    let mut values: Vec<f64> = processes.variables.iter().map(|v| v.initial).collect();
+    // Between steps, too, processes may jump, as often as they like.
+    for jumps in [false, true] {
+        if !jumps && context.time.clock.is_jumps() {
+            continue;
         }
-        let mut findings =
-            Findings { variables: &processes.variables, known: BTreeSet::new(), list: Vec::new() };
-        let mut looks = MOST_LOOKS;
-        // A part reads no variables but its own, which each of its states sets.
-        let mut values: Vec<f64> = processes.variables.iter().map(|v| v.initial).collect();
-        // Between steps, too, processes may jump, as often as they like.
-        for jumps in [false, true] {
-            if !jumps && self.clock.is_jumps() {
-                continue;
+        let steps = if jumps { u64::MAX } else { context.time.horizon.0 };
+        // Who reads more than variables hides nothing of those that do not.
+        for closed in [false, true] {
+            let mut walked = true;
+            for part in Part::of(processes, writings, Scope { jumps, closed }) {
+                let mut walk = Walk { processes, part: &part, jumps, looks: &mut looks };
+                walked &= walk.through(steps, &mut values, &mut findings).is_ok();
             }
-            let steps = if jumps { u64::MAX } else { self.horizon.0 };
-            // Who reads more than variables hides nothing of those that do not.
-            for closed in [false, true] {
-                let mut walked = true;
-                for part in Part::of(processes, writings, Scope { jumps, closed }) {
-                    let mut walk = Walk { processes, part: &part, jumps, looks: &mut looks };
-                    walked &= walk.through(steps, &mut values, &mut findings).is_ok();
-                }
-                if walked {
-                    break;
-                }
+            if walked {
+                break;
             }
-        }
-        for found in findings.list {
-            self.note(found);
         }
     }
+    for found in findings.list {
+        context.note(found);
+    }
+}
 
-    /// Whether what was not read may have said that processes jump where they seem to step.
-    fn may_race(&self) -> bool {
-        let is_timed = |torn: &Span| {
-            let text = self.text(*torn);
-            words(&text).any(|word| ["at", "after", "process"].contains(&word))
-        };
-        matches!(self.clock, Clock::Steps) && self.torn.iter().any(is_timed)
-    }
+/// Whether what was not read may have said that processes jump where they seem to step.
+fn may_race(context: &Context<'_>) -> bool {
+    let is_timed =
+        |item: &&Broken| item.words.iter().any(|word| ["at", "after", "process"].contains(&word.as_str()));
+    matches!(context.time.clock, Clock::Steps) && context.torn.iter().any(is_timed)
 }
 
 /// A walk through the states of a part.

@@ -182,3 +182,28 @@ pub struct SourceDecl {
     /// The whole declaration.
     pub span: Span,
 }
+
+impl BehaviourDecl {
+    /// Where its conditions, delays, weights, fields and names are written, each as a whole.
+    pub fn values(&self) -> Vec<Span> {
+        let weights = |choices: &[Choice]| -> Vec<Span> {
+            choices.iter().filter_map(|choice| choice.weight.as_ref()).map(|weight| weight.span).collect()
+        };
+        let mut found = Vec::new();
+        for item in &self.items {
+            match item {
+                BehaviourItem::State(state) => {
+                    found.extend(state.fields.iter().map(|field| field.value.span()));
+                    for transition in &state.transitions {
+                        found.extend(transition.guard.as_ref().map(|guard| guard.span));
+                        found.extend(transition.after.as_ref().map(|after| after.span()));
+                        found.extend(weights(&transition.targets));
+                    }
+                }
+                BehaviourItem::On(on) => found.extend(weights(&on.choices)),
+                BehaviourItem::Let(decl) => found.push(decl.body.span),
+            }
+        }
+        found
+    }
+}

@@ -404,3 +404,41 @@ pub enum MoveOption {
     /// `stop`
     Stop(Span),
 }
+
+impl Value {
+    /// Where it is written.
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Plain(expr) => expr.span,
+            Self::Truncated { law, high, .. } => law.span.to(high.span),
+            Self::UniformIn(shape) => shape.span(),
+            Self::Near { agent, within } => agent.span.to(within.span),
+            Self::Route(route) => route.legs.iter().map(Leg::span).reduce(Span::to).unwrap_or_default(),
+            Self::Sided { along, across } => along.span().to(across.span()),
+            Self::Arguments { name, arguments } => {
+                arguments.iter().fold(name.span, |span, argument| span.to(argument.value.span))
+            }
+            Self::Learned { span, .. } => *span,
+            Self::Force { kind, preset } => kind.span.to(preset.span),
+        }
+    }
+}
+
+impl Leg {
+    fn span(&self) -> Span {
+        match self {
+            Self::Goal(goal) => goal.span,
+            Self::Wait(value) => value.span(),
+        }
+    }
+}
+
+impl ShapeExpr {
+    /// Where it is written.
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Named(name) => name.span,
+            Self::Circle { span, .. } | Self::Rectangle { span, .. } | Self::Polygon { span, .. } => *span,
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Who is seen at an instant: what compilation gets of recordings and of streams.
+
+use crate::base::geometry::Vec2;
+use crate::data::tracks::{PersonState, Recording};
+use crate::model::AgentId;
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Somebody at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Who it is.
+    pub id: u32,
+    /// Position, m.
+    pub position: Vec2,
+    /// Velocity, m/s.
+    pub velocity: Vec2,
+    /// The velocity that this person wants to have, m/s: the mean over the memory of the track.
+    pub driving: Vec2,
+}
+
+/// Who is seen at an instant, instead of what tracks of a scenario say of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Everybody, by ascending id.
+    pub people: Vec<Sighting>,
+    /// Groups, each of ascending ids; whoever is in none walks alone.
+    pub groups: Vec<Vec<u32>>,
+    /// Times, s, and positions, m, of each up to now; mean velocities are taken over them.
+    pub past: BTreeMap<u32, Vec<(f64, Vec2)>>,
+}
+
+impl Seen {
+    /// The mean velocity of somebody over the last `memory` seconds, or for as long as there is a past.
+    fn driving(&self, now: &Sighting, memory: f64) -> Vec2 {
+        let past = self.past.get(&now.id).map_or(&[][..], Vec::as_slice);
+        let Some((last, _)) = past.last().filter(|_| memory > 0.0) else { return now.velocity };
+        let first = past.iter().find(|(time, _)| *time >= last - memory).filter(|(time, _)| time < last);
+        first.map_or(now.velocity, |(time, position)| (now.position - position) / (last - time))
+    }
+}
+
+/// Finds the groups of people who are seen at an instant; each of ascending ids, in the order of the first.
+pub type Grouping = fn(&[Sighting]) -> Vec<Vec<u32>>;
+
+/// The recordings of a scenario, and who of them is in use.
+#[derive(Default)]
+pub(crate) struct Recordings {
+    /// Those read so far; `None` for one that could not be read.
+    pub(crate) recordings: Vec<Option<Tracks>>,
+    /// The destinations beside each, m, or why there are none.
+    pub(crate) destinations: Vec<Result<Vec<Vec2>, String>>,
+    /// Their names, and which velocities they have.
+    pub(crate) velocities: Vec<(String, &'static str)>,
+    /// Finds groups of people who are seen.
+    pub(crate) grouping: Option<Grouping>,
+    /// Agents who are named and not seen, with their stable numbers: they never come.
+    pub(crate) unseen: Vec<(AgentId, u32)>,
+    /// The recorded persons in use, with the places of their declarations.
+    pub(crate) recorded: BTreeMap<(usize, u32), Span>,
+    /// Files of learned gaits that could be read.
+    pub(crate) gaits: BTreeMap<String, Arc<str>>,
+}
+
+/// Declared tracks.
+pub(crate) enum Tracks {
+    /// Recorded; mean velocities are taken over the last `memory` seconds.
+    Recorded { recording: Recording, memory: f64 },
+    /// What is seen now, whatever time is asked for.
+    Live { seen: Seen, memory: f64 },
+}
+
+impl Tracks {
+    /// Everybody at a time, by ascending id.
+    pub(crate) fn at(&self, time: f64) -> Vec<Sighting> {
+        match self {
+            Self::Live { seen, memory } => {
+                let sighting = |one: &Sighting| Sighting { driving: seen.driving(one, *memory), ..*one };
+                seen.people.iter().map(sighting).collect()
+            }
+            Self::Recorded { recording, memory } => {
+                let before = |o: &PersonState| mean_velocity(recording, o, time, *memory);
+                let sighting = |o: PersonState| Sighting {
+                    id: o.id,
+                    position: o.position,
+                    velocity: o.velocity,
+                    driving: before(&o),
+                };
+                recording.at(time).into_iter().map(sighting).collect()
+            }
+        }
+    }
+}
+
+/// The mean velocity of somebody over the last `memory` seconds, or for as long as the track lasts; without a past, the present one.
+fn mean_velocity(recording: &Recording, now: &PersonState, time: f64, memory: f64) -> Vec2 {
+    let Some((from, _)) = recording.presence(now.id).filter(|_| memory > 0.0) else { return now.velocity };
+    let since = if from > time - memory { from } else { time - memory };
+    let then = recording.at(since).into_iter().find(|o| o.id == now.id);
+    match then {
+        Some(then) if time > since => (now.position - then.position) / (time - since),
+        _ => now.velocity,
+    }
+}

@@ -1,0 +1,256 @@
+//! Kinds of agents: parameters inherited, preset, overridden.
+
+use crate::compile::context::kind::FIELDS;
+use crate::compile::context::kind::{Kind, Planning};
+use crate::compile::context::symbols::{Meaning, unknown};
+use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::lower::laws;
+use crate::compile::people::planners;
+use crate::compile::people::refused;
+use crate::compile::people::stepping;
+use crate::compile::presets::{PRESETS, law};
+use crate::compile::scene::periodic;
+use crate::model::{self, Body, Law, Parameter, Planner, Stepper};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The field that says how an agent finds its way, and its values; the first one is the default.
+const WAYFINDING: &str = "wayfinding";
+const WAYS: [&str; 2] = ["shortest", "straight"];
+
+/// The fields of a kind that are no parameters.
+fn fields_of(kind: model::Kind) -> &'static [&'static str] {
+    match kind {
+        model::Kind::Sfm => &[WAYFINDING],
+        model::Kind::Planned => &FIELDS,
+        model::Kind::Stepped => &["gait", "search"],
+    }
+}
+
+/// Some law of a parameter.
+fn any_law(parameter: Parameter) -> Option<Law> {
+    let preset = PRESETS.iter().find_map(|preset| law(preset.name, parameter));
+    // A value that all parameters of plans may have.
+    preset.or_else(|| parameter.allows(2.0).then_some(Law::Constant(2.0)))
+}
+
+/// The parameters of a kind by name.
+pub(crate) fn kind(context: &mut Context<'_>, name: &Ident) -> Lowered<Kind> {
+    if let Some(base) = model::Kind::named(&name.name) {
+        return Ok(Kind { base, ..Kind::default() });
+    }
+    let Some((_, meaning)) = context.look_up(&name.name, 0) else {
+        let looked_at = if context.sink.looks_for_names() { usize::MAX } else { 0 };
+        let declared = context.names.scopes[0]
+            .entries()
+            .take(looked_at)
+            .filter(|(_, e)| matches!(e.meaning, Meaning::Kind(_)))
+            .map(|(n, _)| n);
+        let error = unknown(
+            "kind",
+            &name.name,
+            name.span,
+            Code::E0208,
+            declared.chain(model::Kind::ALL.map(model::Kind::name)),
+        );
+        return context.report(error);
+    };
+    let Meaning::Kind(decl) = meaning else {
+        if matches!(meaning, Meaning::Doubtful) {
+            return Err(Reported);
+        }
+        return context.report(error!(
+            E0206,
+            name.span,
+            "expected a kind, but `{}` is {}",
+            name.name,
+            meaning.noun()
+        ));
+    };
+    if context.names.expanding.iter().any(|(_, n)| *n == name.name) {
+        if context.names.circles.contains(&name.name) {
+            return Err(Reported);
+        }
+        context.names.circles.extend(context.names.expanding.iter().map(|(_, n)| n.clone()));
+        return context.report(
+            error!(E0205, name.span, "the kind `{}` depends on itself", name.name).about(About::Circle),
+        );
+    }
+    if let Some(known) = context.kinds.get(&name.name) {
+        return known.clone();
+    }
+    context.expand_further(name.span)?;
+    context.names.expanding.push((0, name.name.clone()));
+    let kind = own_kind(context, decl);
+    context.names.expanding.pop();
+    context.kinds.insert(name.name.clone(), kind.clone());
+    kind
+}
+
+/// The parameters of a kind as it is declared.
+pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Kind> {
+    let mut kind = kind(context, &decl.base);
+    if let Some(preset) = &decl.preset {
+        if PRESETS.iter().any(|p| p.name == preset.name) {
+            if let Ok(kind) = &mut kind {
+                for parameter in Parameter::of_kind(kind.base) {
+                    if let Some(law) = law(&preset.name, parameter) {
+                        kind.laws[parameter as usize] = Some(law);
+                    }
+                }
+            }
+        } else {
+            let error =
+                unknown("preset", &preset.name, preset.span, Code::E0208, PRESETS.iter().map(|p| p.name));
+            let known = format!("the presets are {}", PRESETS.map(|p| p.name).join(", "));
+            let error = match error.hint.clone() {
+                Some(near) => error.hint(format!("{near} {known}")),
+                None => error.hint(known),
+            };
+            context.note(error);
+            kind = Err(Reported);
+        }
+    }
+    let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
+    let rest = parameters(context, &decl.body, kind.as_mut().ok(), &Locals::default());
+    for field in rest {
+        let known = Parameter::of_kind(base).map(Parameter::name).chain(fields_of(base).iter().copied());
+        let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
+        context.note(error);
+        // The words of a field that other kinds have are no names.
+        let name = field.name.name.as_str();
+        if model::Kind::ALL.iter().all(|kind| !fields_of(*kind).contains(&name)) {
+            refused::look_at(context, &field.value, &Locals::default());
+        }
+        kind = Err(Reported);
+    }
+    kind
+}
+
+/// Takes the parameters among some fields into a kind; returns the other fields.
+pub(crate) fn parameters<'f>(
+    context: &mut Context<'_>,
+    fields: impl IntoIterator<Item = &'f Field>,
+    mut kind: Option<&mut Kind>,
+    locals: &Locals,
+) -> Vec<&'f Field> {
+    let mut rest = Vec::new();
+    let mut set: BTreeMap<&str, &Field> = BTreeMap::new();
+    for field in fields {
+        let first = *set.entry(&field.name.name).or_insert(field);
+        if !std::ptr::eq(first, field) {
+            let error = error!(E0202, field.name.span, "`{}` is set twice", field.name.name)
+                .related(first.name.span, "first set here");
+            context.note(error);
+            continue;
+        }
+        let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
+        if fields_of(base).contains(&field.name.name.as_str()) {
+            let taken = match (&mut kind, base) {
+                (Some(kind), model::Kind::Planned) => planners::planning(context, field, kind, locals),
+                (Some(kind), model::Kind::Stepped) => stepping::stepping(context, field, kind, locals),
+                (kind, _) => goes_straight(context, &field.value).map(|straight| {
+                    if let Some(kind) = kind {
+                        kind.straight = straight;
+                    }
+                }),
+            };
+            context.given_up |= taken.is_err();
+            continue;
+        }
+        let known = match &kind {
+            Some(kind) => kind.parameter(&field.name.name),
+            None => Parameter::named(&field.name.name),
+        };
+        let Some(parameter) = known else {
+            rest.push(field);
+            continue;
+        };
+        let law = laws::parameter_law(context, parameter, &field.value, locals);
+        context.given_up |= law.is_err();
+        context.roster.any_start |= law.is_err() && parameter == Parameter::Radius;
+        // What was set wrongly is set: any value will do until it is set right.
+        let Some(law) = law.ok().or_else(|| any_law(parameter)) else { continue };
+        if let Some(kind) = &mut kind {
+            kind.laws[parameter as usize] = Some(law);
+        }
+    }
+    rest
+}
+
+/// The body of a kind: every parameter must be known now.
+pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowered<Body> {
+    if kind.base != model::Kind::Sfm {
+        periodic::refuse_if_periodic(
+            context,
+            name.span,
+            "walkers that plan or step",
+            "use a kind that starts from `sfm`",
+        )?;
+    }
+    let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());
+    // A preferred speed follows from the largest one.
+    let follows = |parameter: &Parameter| kind.base == model::Kind::Planned && *parameter == Parameter::Speed;
+    let missing: Vec<&str> = missing.filter(|parameter| !follows(parameter)).map(Parameter::name).collect();
+    if !missing.is_empty() {
+        let title = format!("`{}` has no {}", name.name, missing.join(", "));
+        // Said once, however many are of that kind.
+        if context.sink.diagnostics.iter().any(|d| d.code == Code::E0209 && d.title == title) {
+            return Err(Reported);
+        }
+        let hint = if kind.base == model::Kind::Planned {
+            "write for example `limit speed = 1.5 m/s` in the kind"
+        } else {
+            "set the values, or start from a preset: `kind adult: sfm preset smc1 { … }`"
+        };
+        return context.report(error!(E0209, name.span, "{title}"; hint: "{hint}"));
+    }
+    let mut body = Body::new(kind.base, |parameter| {
+        // A parameter that the kind does not have: 0 where it may be.
+        let neutral = [0.0, 1.0, 2.0].into_iter().find(|value| parameter.allows(*value));
+        kind.law(parameter).unwrap_or(Law::Constant(neutral.unwrap_or_default()))
+    });
+    let is_planned = kind.base == model::Kind::Planned;
+    body.finds_ways = !kind.straight && kind.base == model::Kind::Sfm;
+    body.stepper = (kind.base == model::Kind::Stepped).then(|| {
+        let sets_speed = kind.laws[Parameter::Speed as usize].is_some();
+        Arc::new(Stepper { gait: kind.gait.clone(), search: kind.search, sets_speed })
+    });
+    let Planning { roadmap, clearance, profile } = kind.planning.clone();
+    body.planner = is_planned.then(|| {
+        let speed_follows = kind.laws[Parameter::Speed as usize].is_none();
+        Arc::new(Planner { kind: name.name.clone(), roadmap, clearance, profile, speed_follows })
+    });
+    Ok(body)
+}
+
+/// The bodies of the declared kinds that have all parameters, by name. To be called when all errors were taken: it notes
+/// what the other kinds lack, which is no error of a kind that no agent has.
+pub(crate) fn bodies(context: &mut Context<'_>) -> BTreeMap<String, Body> {
+    let known = std::mem::take(&mut context.kinds).into_iter();
+    let complete = known.filter_map(|(name, kind)| {
+        let ident = Ident { name, span: Span::default() };
+        let body = body(context, &kind.ok()?, &ident).ok()?;
+        Some((ident.name, body))
+    });
+    complete.collect()
+}
+
+/// The value of the field that says how an agent finds its way.
+fn goes_straight(context: &mut Context<'_>, value: &Value) -> Lowered<bool> {
+    let name = match value {
+        Value::Plain(Expr { kind: ExprKind::Name(name), .. }) => Some(name.as_str()),
+        _ => None,
+    };
+    let known = name.and_then(|name| WAYS.iter().position(|way| *way == name));
+    if known.is_none() {
+        let said = "`wayfinding` must be `shortest` or `straight`";
+        return context.report(error!(E0305, value.span(), "{said}";
+                hint: "write `wayfinding = straight` for agents that go straight for their goals whatever is in the way"));
+    }
+    Ok(known == Some(1))
+}

@@ -1,0 +1,311 @@
+//! Routes and moves.
+
+use crate::base::tick::Tick;
+use crate::compile::context::people::People;
+use crate::compile::context::symbols::Meaning;
+use crate::compile::context::typed::Typed;
+use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::dimension::Dimension;
+use crate::compile::lower::laws;
+use crate::compile::lower::laws::advise_bounds;
+use crate::compile::lower::shapes;
+use crate::compile::scene::periodic;
+use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
+use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};
+use crate::syntax::source::Span;
+
+/// Most options of a `moves` declaration.
+const MOST_OPTIONS: usize = 1000;
+/// Most alternatives of a `paths` declaration.
+const MOST_PATHS: i64 = 64;
+
+/// A route as written.
+pub(crate) fn route(context: &mut Context<'_>, value: &Value, locals: &Locals) -> Lowered<Route> {
+    periodic::refuse_if_periodic(context, value.span(), "routes", "write `direction = 0 deg` in the agent")?;
+    match value {
+        Value::Plain(expr) => {
+            let goal = goal(context, expr, locals)?;
+            Ok(Route::Legs { legs: vec![Leg::To(goal)], then_leave: false })
+        }
+        Value::Route(route) => {
+            let mut legs = Vec::with_capacity(route.legs.len());
+            for leg in &route.legs {
+                legs.push(match leg {
+                    ast::Leg::Goal(expr) => goal(context, expr, locals).map(Leg::To),
+                    ast::Leg::Wait(value) => {
+                        let law = laws::law(context, value, Dimension::TIME, locals);
+                        match law {
+                            Ok(law) if law.bounds().0 < 0.0 => {
+                                let at = value.span();
+                                let said = "a waiting time cannot be negative";
+                                let text = context.text(at);
+                                context.report(advise_bounds(error!(E0405, at, "{said}"), &law, &text))
+                            }
+                            law => law.map(Leg::Wait),
+                        }
+                    }
+                });
+            }
+            let legs: Vec<Leg> = legs.into_iter().collect::<Lowered<_>>()?;
+            if let Some(span) = route.then_leave
+                && !legs.iter().any(|leg| matches!(leg, Leg::To(_)))
+            {
+                return context.report(error!(E0408, span, "`then leave` needs a goal before it"));
+            }
+            Ok(Route::Legs { legs, then_leave: route.then_leave.is_some() })
+        }
+        other => context.report(error!(E0305, other.span(), "expected a route";
+                    hint: "write goals joined by arrows: `(9, 3) -> exit`")),
+    }
+}
+
+pub(crate) fn goal(context: &mut Context<'_>, expr: &Expr, locals: &Locals) -> Lowered<Goal> {
+    // People are not known yet where routes are settled, and never are goals.
+    if let ast::ExprKind::Name(name) = &expr.kind
+        && let Some((_, meaning @ (Meaning::Declared | Meaning::Agent(_) | Meaning::Agents { .. }))) =
+            context.look_up(name, locals.scope)
+        && locals.names.iter().all(|(bound, _)| bound != name)
+    {
+        let said = format!("expected a region or a point as a goal, found {}", meaning.noun());
+        return context.report(error!(E0305, expr.span, "{said}"));
+    }
+    match context.lower(expr, locals)? {
+        Typed::Region(id) => Ok(Goal::Region(id)),
+        Typed::Point(x, y) => shapes::place(context, expr.span, (x, y)).map(Goal::Point),
+        found => context.mismatch(expr.span, "a region or a point as a goal", &found),
+    }
+}
+
+/// The moves of a scenario; each agent has one list of them.
+pub(crate) fn all_moves<'a>(
+    context: &mut Context<'a>,
+    file: &'a ScenarioFile,
+    people: &People,
+) -> Vec<Moves> {
+    let mut moves: Vec<Moves> = Vec::new();
+    let mut declared: Vec<Span> = Vec::new();
+    for item in &file.items {
+        let (one, name) = match item {
+            Item::Moves(decl) => (lower_moves(context, decl, people), &decl.agent),
+            Item::Paths(decl) => (lower_paths(context, decl, people), &decl.agent),
+            _ => continue,
+        };
+        let Ok(one) = one else {
+            context.roster.advised = None;
+            continue;
+        };
+        let (key, what) = one.key();
+        if let Some(advised) = &mut context.roster.advised {
+            advised.insert(key);
+        }
+        if let Some(first) = moves.iter().position(|known| known.key().0 == key) {
+            let said = format!("the {what} of `{}` are declared twice", name.name);
+            let error = error!(E0406, name.span, "{said}")
+                .related(declared[first], "first declared here")
+                .hint("write all options in one list");
+            context.note(error);
+        }
+        moves.push(one);
+        declared.push(name.span);
+    }
+    moves
+}
+
+/// `moves user for 2 s { … }`
+fn lower_moves<'a>(context: &mut Context<'a>, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
+    let agent = advised_agent(context, (&decl.agent, decl.member.as_ref()), "moves", people);
+    let duration = context.time(&decl.duration, &Locals::default());
+    let mut options: Vec<(String, Move)> = Vec::new();
+    let mut routes: Vec<Route> = Vec::new();
+    let mut failed = false;
+    for option in &decl.options {
+        failed |= lower_option(context, option, &mut options, &mut routes).is_err();
+    }
+    let agent = agent?;
+    let Some(duration) = duration? else {
+        return context.report(error!(E0406, decl.duration.span, "the duration of a move must be finite"));
+    };
+    if duration == Tick(0) {
+        let error = error!(E0406, decl.duration.span, "the duration of a move must be positive");
+        return context.report(error);
+    }
+    if failed {
+        return Err(Reported);
+    }
+    if options.is_empty() {
+        return context.report(error!(E0406, decl.span, "the moves have no option";
+                    hint: "write for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"));
+    }
+    Ok(Moves { agent, duration, options, routes, paths: None })
+}
+
+/// `paths people[1] { roadmap alternatives 4 }`: which paths there are is known when the roadmap is drawn.
+fn lower_paths<'a>(context: &mut Context<'a>, decl: &'a PathsDecl, people: &People) -> Lowered<Moves> {
+    let agent = advised_agent(context, (&decl.agent, decl.member.as_ref()), "paths", people);
+    let number = context.number_of(&decl.alternatives, Dimension::NONE, &Locals::default())?;
+    let Some(most) = number.as_whole().filter(|n| (1..=MOST_PATHS).contains(n)) else {
+        let said = format!(
+            "the number of alternatives must be a whole number from 1 to {MOST_PATHS} (got {})",
+            number.value
+        );
+        return context.report(error!(E0406, decl.alternatives.span, "{said}"));
+    };
+    let agent = agent?;
+    if people.agents[agent.0 as usize].body.planner.is_none() {
+        let said = format!("`{}` does not plan, and has no paths", people.agents[agent.0 as usize].name);
+        let error = error!(E0406, decl.agent.span, "{said}");
+        return context.report(
+            error.hint("declare its kind as `planned`: `kind planner: planned { limit speed = 1.5 m/s }`"),
+        );
+    }
+    let options = (0..most as u32).map(|k| (format!("path {}", k + 1), Move::Path(k))).collect();
+    Ok(Moves { agent, duration: Tick(0), options, routes: Vec::new(), paths: Some(Vec::new()) })
+}
+
+/// The one agent that moves or paths belong to.
+fn advised_agent(
+    context: &mut Context<'_>,
+    (name, member): (&Ident, Option<&Expr>),
+    what: &str,
+    people: &People,
+) -> Lowered<AgentId> {
+    let plain = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
+    let expr = match member {
+        Some(member) => Expr {
+            span: name.span.to(member.span),
+            kind: ast::ExprKind::Index(Box::new(plain), Box::new(member.clone())),
+        },
+        None => plain,
+    };
+    let typed = context.lower(&expr, &Locals::default())?;
+    let is_one = matches!(&typed, Typed::Agents { set, particle: true } if set.members.len() == 1);
+    if matches!(typed, Typed::Agents { .. }) && !is_one {
+        let said = format!("{what} must belong to one agent");
+        return context.report(error!(E0406, expr.span, "{said}";
+                hint: "write one member, such as `{}[1]`, or declare a single agent: `agent user: …`", name.name));
+    }
+    match context.as_agent(typed, expr.span)? {
+        Who::Agent(agent) if people.agents.get(agent.0 as usize).is_some() => Ok(agent),
+        _ => Err(Reported),
+    }
+}
+
+/// The agents that leave after a move, by the names that are written.
+pub(crate) fn leave_by_moves(context: &mut Context<'_>, file: &ScenarioFile) {
+    let leaves = |option: &MoveOption| matches!(option, MoveOption::Route { route: Value::Route(route), .. } if route.then_leave.is_some());
+    for item in &file.items {
+        if let Item::Moves(decl) = item
+            && decl.options.iter().any(leaves)
+        {
+            // Of a member whose number is computed, any may be meant.
+            let of = |name: &String| {
+                name.strip_prefix(decl.agent.name.as_str())
+                    .is_some_and(|rest| rest.is_empty() || decl.member.is_some() && rest.starts_with('['))
+            };
+            for agent in 0..context.roster.agent_names.len() {
+                if of(&context.roster.agent_names[agent]) {
+                    context.roster.passing.insert(AgentId(agent as u32));
+                }
+            }
+        }
+    }
+}
+
+fn lower_option(
+    context: &mut Context<'_>,
+    option: &MoveOption,
+    options: &mut Vec<(String, Move)>,
+    routes: &mut Vec<Route>,
+) -> Lowered<()> {
+    match option {
+        MoveOption::Route { name, route: written, span } => {
+            let label = format!("route {}", name.name);
+            let route = route(context, written, &Locals::default())?;
+            let goes = matches!(&route, Route::Legs { legs, .. } if legs.iter().any(|leg| matches!(leg, Leg::To(_))));
+            if !goes {
+                let error = error!(E0406, written.span(), "`{label}` has no goal";
+                            hint: "write for example `{label} = (9, 3) -> exit`");
+                return context.report(error);
+            }
+            if options.iter().any(|(known, _)| *known == label) {
+                return context.report(error!(E0406, *span, "`{label}` is listed twice";
+                        hint: "give one of them another name"));
+            }
+            options.push((label, Move::Route(routes.len())));
+            routes.push(route);
+            Ok(())
+        }
+        MoveOption::Stop(span) => {
+            if options.iter().any(|(_, m)| *m == Move::Stop) {
+                return context.report(error!(E0406, *span, "`stop` is listed twice"));
+            }
+            options.push(("stop".to_owned(), Move::Stop));
+            Ok(())
+        }
+        MoveOption::Heading(angle) => {
+            let number = context.number_of(angle, Dimension::ANGLE, &Locals::default())?;
+            heading(context, number.value, angle.span, options)
+        }
+        MoveOption::Headings { from, to, by, span } => {
+            let ends = (
+                context.number_of(from, Dimension::ANGLE, &Locals::default()),
+                context.number_of(to, Dimension::ANGLE, &Locals::default()),
+                context.number_of(by, Dimension::ANGLE, &Locals::default()),
+            );
+            let (from, to, by) = (ends.0?.value, ends.1?.value, ends.2?.value);
+            if by <= 0.0 || to < from {
+                return context.report(error!(
+                    E0406,
+                    *span, "headings must go up from the first to the last by a positive angle"
+                ));
+            }
+            // As a float: a count of headings can be larger than any whole number of the machine.
+            let steps = ((to - from) / by + 1e-9).floor();
+            if steps >= MOST_OPTIONS.saturating_sub(options.len()) as f64 {
+                return context
+                    .report(error!(E0406, *span, "the moves have more than {MOST_OPTIONS} options"));
+            }
+            for k in 0..=steps as usize {
+                let angle = from + by * k as f64;
+                // What is zero but for rounding is the direct way.
+                let angle = if angle.abs() < 1e-12 { 0.0 } else { angle };
+                heading(context, angle, *span, options)?;
+            }
+            Ok(())
+        }
+    }
+}
+
+/// One heading more; full turns do not make it another.
+fn heading(
+    context: &mut Context<'_>,
+    angle: f64,
+    span: Span,
+    options: &mut Vec<(String, Move)>,
+) -> Lowered<()> {
+    let label = heading_label(angle);
+    let same = |other: &Move| match other {
+        Move::Heading(known) => {
+            let turns = (angle - known) / std::f64::consts::TAU;
+            (turns - turns.round()).abs() < 1e-9
+        }
+        Move::Stop | Move::Route(_) | Move::Path(_) => false,
+    };
+    if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
+        let text = if *known == label {
+            format!("`{label}` is listed twice")
+        } else {
+            format!("`{label}` is listed twice, first as `{known}`")
+        };
+        return context.report(error!(E0406, span, "{text}"));
+    }
+    options.push((label, Move::Heading(angle)));
+    Ok(())
+}
+
+fn heading_label(angle: f64) -> String {
+    let degrees = angle.to_degrees();
+    let rounded = (degrees * 1e6).round() / 1e6;
+    let rounded = if rounded == 0.0 { 0.0 } else { rounded };
+    format!("heading {rounded} deg")
+}

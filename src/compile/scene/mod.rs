@@ -1,0 +1,158 @@
+//! The scene: walls, obstacles, regions.
+
+pub(crate) mod imports;
+pub(crate) mod periodic;
+
+use crate::base::geometry::{Segment, Shape, Vec2};
+use crate::compile::context::entry;
+use crate::compile::context::symbols::Meaning;
+use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::files::Files;
+use crate::compile::lower::builtin::DISTRIBUTIONS;
+use crate::compile::lower::shapes;
+use crate::compile::scene::imports::fields::Import;
+use crate::compile::scene::imports::walls;
+use crate::data::geometry::{self, plan::TOUCHING};
+use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
+use crate::syntax::ast::{Expr, ExprKind, SceneItem};
+use crate::syntax::diagnostic::About;
+use crate::syntax::source::Span;
+
+/// Declares the names of a scene. Regions and barriers get their numbers in order of writing; barriers of
+/// imports come last.
+pub(crate) fn declare_scene<'a>(context: &mut Context<'a>, items: &'a [SceneItem]) {
+    for item in items {
+        match item {
+            SceneItem::Region { name, shape } => {
+                context.shapes.push(None);
+                let id = RegionId(context.shapes.len() as u32 - 1);
+                context.scene.regions.push(Region {
+                    name: name.name.clone(),
+                    shape: Shape::rectangle(Vec2::zeros(), Vec2::zeros()),
+                });
+                entry::enter(context, name, Meaning::Region(id, shape));
+            }
+            SceneItem::Wall { name, .. } | SceneItem::Obstacle { name, .. } => {
+                let id = BarrierId(context.scene.barriers.len() as u32);
+                let text = name.as_ref().map_or(String::new(), |n| n.name.clone());
+                context.scene.barriers.push(Barrier { name: text, obstacle: Obstacle::Wall(Vec::new()) });
+                if let Some(name) = name {
+                    entry::enter(context, name, Meaning::Barrier(id));
+                }
+            }
+            SceneItem::Point { name, at } => entry::enter(context, name, Meaning::Point(at)),
+            SceneItem::Line { name, .. } => {
+                let id = LineId(context.scene.lines.len() as u32);
+                let nowhere = Segment::new(Vec2::zeros(), Vec2::zeros());
+                context.scene.lines.push(Line { name: name.name.clone(), segment: nowhere });
+                entry::enter(context, name, Meaning::Line(id));
+            }
+            SceneItem::Import { .. } | SceneItem::Periodic { .. } => {}
+        }
+    }
+}
+
+/// Settles the shapes of a scene; `next` and `line` are the numbers of its first barrier and its first line.
+pub(crate) fn settle_scene<'a>(
+    context: &mut Context<'a>,
+    items: &'a [SceneItem],
+    files: &Files,
+    (next, line): (&mut usize, &mut usize),
+) {
+    let mut imports = Vec::new();
+    for item in items {
+        match item {
+            SceneItem::Region { name, shape } => {
+                let entry = context.names.scopes[0].get(&name.name).filter(|entry| entry.span == name.span);
+                if let Some(Meaning::Region(id, _)) = entry.map(|entry| entry.meaning.clone()) {
+                    if let Ok(shape) = shapes::region_shape(context, id, name.span) {
+                        context.scene.regions[id.0 as usize].shape = shape;
+                    }
+                } else {
+                    // The name is taken; what is wrong with the shape is said beside that.
+                    let _ = shapes::lower_shape(context, shape, &Locals::default());
+                }
+            }
+            SceneItem::Wall { points, span, .. } => {
+                if let Ok(segments) = wall(context, points, *span) {
+                    context.scene.barriers[*next].obstacle = Obstacle::Wall(segments);
+                }
+                *next += 1;
+            }
+            SceneItem::Obstacle { shape, .. } => {
+                if let Ok(shape) = shapes::lower_shape(context, shape, &Locals::default()) {
+                    context.scene.barriers[*next].obstacle = Obstacle::Solid(shape);
+                }
+                *next += 1;
+            }
+            SceneItem::Point { name, at } => match shapes::point_of(context, at, &Locals::default()) {
+                Ok(at) => context.scene.points.push((name.name.clone(), at)),
+                Err(Reported) => entry::doubt(context, 0, &name.name),
+            },
+            SceneItem::Line { ends, span, .. } => {
+                if let Ok(segment) = lower_line(context, ends, *span) {
+                    context.scene.lines[*line].segment = segment;
+                }
+                *line += 1;
+            }
+            SceneItem::Import { path, walkable, filter, fields, .. } => {
+                imports.push(Import { path, walkable: *walkable, filter: filter.as_ref(), fields });
+            }
+            SceneItem::Periodic { .. } => {}
+        }
+    }
+    let first = context.scene.barriers.len();
+    imports::import_all(context, &imports, files);
+    periodic::check_imported(context, items, first);
+    let walls =
+        walls(&mut context.scene.barriers).into_iter().map(|pieces| pieces.clone()).collect::<Vec<_>>();
+    let wall = items.iter().find_map(|item| match item {
+        SceneItem::Wall { span, .. } | SceneItem::Import { span, .. } => Some(*span),
+        _ => None,
+    });
+    if let Some(span) = wall.filter(|_| geometry::is_crowded(&walls, &[], TOUCHING)) {
+        imports::crowded(context, span);
+    }
+}
+
+fn wall(context: &mut Context<'_>, points: &[Expr], span: Span) -> Lowered<Vec<Segment>> {
+    let corner = |(k, point)| if k == 0 { first_corner(context, point) } else { corner(context, point) };
+    let corners: Vec<_> = points.iter().enumerate().map(corner).collect();
+    let corners: Vec<Vec2> = corners.into_iter().collect::<Lowered<_>>()?;
+    if corners.windows(2).all(|pair| pair[0] == pair[1]) {
+        return context.report(error!(E0401, span, "the wall has no length"));
+    }
+    Ok(corners
+        .windows(2)
+        .filter(|pair| pair[0] != pair[1])
+        .map(|pair| Segment::new(pair[0], pair[1]))
+        .collect())
+}
+
+fn lower_line(context: &mut Context<'_>, ends: &[Expr; 2], span: Span) -> Lowered<Segment> {
+    let [a, b] = ends.each_ref().map(|end| corner(context, end));
+    let segment = Segment::new(a?, b?);
+    if segment.a == segment.b {
+        return context.report(error!(E0401, span, "the line has no length";
+                hint: "write two different points: `line door: (3, 0) -- (3, 2)`"));
+    }
+    Ok(segment)
+}
+
+fn corner(context: &mut Context<'_>, point: &Expr) -> Lowered<Vec2> {
+    shapes::point_of(context, point, &Locals::default())
+}
+
+/// Where a wall begins. `wall south (0, 0) -- …` lacks a colon: it reads as a call.
+fn first_corner(context: &mut Context<'_>, point: &Expr) -> Lowered<Vec2> {
+    if let ExprKind::Call { function, arguments } = &point.kind
+        && arguments.len() == 2
+        && context.look_up(&function.name, 0).is_none()
+        && !BuiltIn::names().chain(DISTRIBUTIONS).any(|known| known == function.name)
+    {
+        let name = &function.name;
+        return context.report(error!(E0203, function.span, "unknown function `{name}`";
+                hint: "write `:` after a name: `wall {name}: {}`", context.text(Span { start: function.span.end, ..point.span })).about(About::Name(name.clone())));
+    }
+    corner(context, point)
+}
