@@ -38,6 +38,7 @@ mod mocap;
 mod mutants;
 mod mutation;
 mod nesting;
+mod objects;
 mod pages;
 mod perception;
 mod periodic;

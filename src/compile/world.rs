@@ -3,37 +3,26 @@
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::behaviour;
-use crate::compile::context::clock;
-use crate::compile::context::clock::Told;
-use crate::compile::context::entry;
-use crate::compile::context::moments;
-use crate::compile::context::number::Number;
-use crate::compile::context::people::People;
-use crate::compile::context::people::keep_starts;
-use crate::compile::context::processes::Declared;
-use crate::compile::context::symbols;
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::symbols::Scope;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    clock::{self, Told},
+    entry, moments,
+    number::Number,
+    people::{People, keep_starts},
+    processes::Declared,
+    symbols::{self, Meaning, Scope},
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
 use crate::compile::files::Files;
-use crate::compile::lower::builtin::{BUILT_IN, OPERATORS};
-use crate::compile::lower::call;
-use crate::compile::lower::defaults;
+use crate::compile::lower::{
+    builtin::{BUILT_IN, OPERATORS},
+    call, defaults,
+};
 use crate::compile::nearest;
-use crate::compile::people;
-use crate::compile::people::groups;
-use crate::compile::people::kinds;
-use crate::compile::people::places;
-use crate::compile::people::routes;
-use crate::compile::people::sources;
-use crate::compile::people::step;
-use crate::compile::people::stepping;
-use crate::compile::people::tracks;
+use crate::compile::people::{self, groups, kinds, places, routes, sources, step, stepping, tracks};
 use crate::compile::process;
-use crate::compile::scene;
-use crate::compile::scene::periodic;
+use crate::compile::scene::{self, periodic};
 use crate::model::{BehaviourId, BuiltIn, Kind, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
@@ -296,14 +285,14 @@ fn check_range(
         return;
     };
     let place = low.span.to(high.span);
-    // A default that something else takes the place of need not lie in its range where one of them follows from what
-    // is set.
-    let is_replaced = context.names.settings.contains_key(&name.name)
-        && (context.names.hangs_on_parameters(place) || context.names.hangs_on_parameters(value.span));
     let ends = (
         context.number_of(low, number.dimension, &locals),
         context.number_of(high, number.dimension, &locals),
     );
+    // A default that something else takes the place of need not lie in its range where one of them follows from what
+    // is set.
+    let is_replaced = context.names.settings.contains_key(&name.name)
+        && (context.names.hangs_on_parameters(place) || context.names.hangs_on_parameters(value.span));
     let (Ok(low), Ok(high)) = ends else { return };
     if low.value > high.value {
         context.roster.any_start = true;

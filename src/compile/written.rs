@@ -1,7 +1,6 @@
 //! How parameters, names, processes and behaviours were written, with their units, for `smc show`.
 
-use crate::compile::context::Context;
-use crate::compile::context::conducts::With;
+use crate::compile::context::{Context, conducts::With};
 use crate::model::{AgentId, BehaviourId};
 use crate::syntax::ast::process::{BehaviourItem, ProcessDecl, ProcessItem, VarDecl};
 use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};

@@ -1,8 +1,10 @@
 //! Who has which behaviours: `with phone, heedful(0.8)`.
 
-use crate::compile::context::Context;
-use crate::compile::context::conducts::With;
-use crate::compile::context::symbols::{Meaning, unknown};
+use crate::compile::context::{
+    Context,
+    conducts::With,
+    symbols::{Meaning, unknown},
+};
 use crate::model::{AgentId, BehaviourId};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use crate::syntax::codes::Code;

@@ -1,16 +1,17 @@
 //! States of behaviours: what they change, and how they end.
 
-use crate::compile::context::conducts::{lets, states};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    conducts::{lets, states},
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::call;
-use crate::compile::lower::laws;
-use crate::compile::lower::laws::distribution;
-use crate::compile::lower::modes;
-use crate::compile::lower::name;
-use crate::compile::people::refused;
-use crate::compile::people::routes;
+use crate::compile::lower::{
+    call,
+    laws::{self, distribution},
+    modes, name,
+};
+use crate::compile::people::{refused, routes};
 use crate::compile::process::timing;
 
 use crate::model::process::wrong_weights;

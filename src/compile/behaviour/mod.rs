@@ -6,15 +6,14 @@
 pub(crate) mod attachment;
 pub(crate) mod conduct;
 
-use crate::compile::context::conducts::With;
-use crate::compile::context::conducts::states;
-use crate::compile::context::people::People;
-use crate::compile::context::people::entities;
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::lower::call;
-use crate::compile::lower::counted_arguments;
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    conducts::{With, states},
+    people::{People, entities},
+    symbols::unknown,
+    typed::Typed,
+};
+use crate::compile::lower::{call, counted_arguments};
 
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};

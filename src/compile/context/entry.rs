@@ -3,8 +3,10 @@
 //! That is told where it is declared. What follows from the one meaning that happens to stand would only confuse: such a name
 //! is looked up as one that was reported.
 
-use crate::compile::context::Context;
-use crate::compile::context::symbols::{Meaning, ScopeId};
+use crate::compile::context::{
+    Context,
+    symbols::{Meaning, ScopeId},
+};
 use crate::syntax::ast::Ident;
 
 /// Declares a name of the scenario.

@@ -1,8 +1,6 @@
 //! Results of lowering, and the names that are bound around an expression.
 
-use crate::compile::context::parts::Frame;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::typed::Typed;
+use crate::compile::context::{parts::Frame, symbols::ScopeId, typed::Typed};
 use crate::syntax::source::Span;
 use std::sync::Arc;
 

@@ -26,26 +26,24 @@ pub(crate) mod wording;
 pub(crate) use lowered::{Locals, Lowered, MOST_NODES, Reported};
 
 use crate::base::geometry::Shape;
-use crate::compile::context::clock::Time;
-use crate::compile::context::conducts::Conducts;
-use crate::compile::context::extent::Extent;
-use crate::compile::context::kind::Kind;
-use crate::compile::context::names::Names;
-use crate::compile::context::number::Number;
-use crate::compile::context::observed::Margins;
-use crate::compile::context::observed::Observed;
-use crate::compile::context::parts::Origins;
-use crate::compile::context::processes::Declared;
-use crate::compile::context::roster::Roster;
-use crate::compile::context::sighting::Recordings;
-use crate::compile::context::sink::Sink;
-use crate::compile::context::symbols::Scope;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::wording::Words;
-use crate::compile::context::wording::without_comments;
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::describe;
-use crate::compile::dimension::single_number;
+use crate::compile::context::{
+    clock::Time,
+    conducts::Conducts,
+    extent::Extent,
+    kind::Kind,
+    names::Names,
+    number::Number,
+    observed::{Margins, Observed},
+    parts::Origins,
+    processes::Declared,
+    roster::Roster,
+    sighting::Recordings,
+    sink::Sink,
+    symbols::Scope,
+    typed::Typed,
+    wording::{Words, without_comments},
+};
+use crate::compile::dimension::{Dimension, describe, single_number};
 use crate::model::Scene;
 use crate::syntax::ast::Broken;
 use crate::syntax::diagnostic::{About, Diagnostic, Severity};

@@ -1,11 +1,13 @@
 //! The names of a world: what each stands for, and which were looked at in vain. A name is looked at once, and what is wrong
 //! with it is said then; where that is taken back, the look has to be forgotten.
 
-use crate::compile::context::dependence::Meant;
-use crate::compile::context::lowered::{Lowered, Reported};
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::{Scope, ScopeId};
-use crate::compile::context::typed::Typed;
+use crate::compile::context::{
+    dependence::Meant,
+    lowered::{Lowered, Reported},
+    number::Number,
+    symbols::{Scope, ScopeId},
+    typed::Typed,
+};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,8 +1,7 @@
 //! Numbers known at compile time: exact where they can be, always with their dimension.
 
 use crate::base::decimal::Decimal;
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::Unit;
+use crate::compile::dimension::{Dimension, Unit};
 
 /// A number with a dimension, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,6 @@
 //! What is observed of the states of a trial: formulas, numbers and conditions, and how each was written.
 
-use crate::compile::context::interned::Interned;
-use crate::compile::context::wording::Texts;
+use crate::compile::context::{interned::Interned, wording::Texts};
 use crate::compile::dimension::Dimension;
 use crate::logic::Tree;
 use crate::model::{Bool, Num};

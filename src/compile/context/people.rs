@@ -1,9 +1,10 @@
 //! The people of a scenario, as they are declared one after the other.
 
 use crate::base::random::name_hash;
-use crate::compile::context::roster::Places;
-use crate::compile::context::roster::Starts;
-use crate::compile::context::{Context, Lowered};
+use crate::compile::context::{
+    Context, Lowered,
+    roster::{Places, Starts},
+};
 use crate::model::Behaviours;
 use crate::model::Processes;
 use crate::model::Scenario;

@@ -1,7 +1,9 @@
 //! How a condition of one state was written, down to its smallest parts: witnesses say which of them decided.
 
-use crate::compile::context::Context;
-use crate::compile::context::parts::{Form, Part};
+use crate::compile::context::{
+    Context,
+    parts::{Form, Part},
+};
 use crate::syntax::source::Span;
 use std::sync::Arc;
 

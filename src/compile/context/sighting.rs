@@ -48,7 +48,7 @@ pub type Grouping = fn(&[Sighting]) -> Vec<Vec<u32>>;
 #[derive(Default)]
 pub(crate) struct Recordings {
     /// Those read so far; `None` for one that could not be read.
-    pub(crate) recordings: Vec<Option<Tracks>>,
+    pub(crate) known: Vec<Option<Tracks>>,
     /// The destinations beside each, m, or why there are none.
     pub(crate) destinations: Vec<Result<Vec<Vec2>, String>>,
     /// Their names, and which velocities they have.

@@ -1,9 +1,7 @@
 //! Expressions after names, units and types are settled.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::parts::Part;
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::describe;
+use crate::compile::context::{number::Number, parts::Part};
+use crate::compile::dimension::{Dimension, describe};
 use crate::logic::{NodeId, TermId};
 use crate::model::{BarrierId, BehaviourId, Bool, LineId, Num, RegionId, Set, Who};
 use std::sync::Arc;

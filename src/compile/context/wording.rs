@@ -1,8 +1,10 @@
 //! The words of what is written, in which names are what they stand for: arguments of functions, and names of processes.
 
-use crate::compile::context::lowered::Locals;
-use crate::compile::context::parts::{Frame, Given, Part};
-use crate::compile::context::typed::Typed;
+use crate::compile::context::{
+    lowered::Locals,
+    parts::{Frame, Given, Part},
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
 use crate::model::Who;
 use crate::syntax::ast::Ident;

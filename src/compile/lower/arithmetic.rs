@@ -1,15 +1,12 @@
 //! Arithmetic, with dimensions.
 
 use crate::base::math;
-use crate::compile::context::number::Number;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::describe;
-use crate::compile::lower::logic;
-use crate::compile::lower::misspelt;
-use crate::compile::lower::weight;
-use crate::compile::lower::weight::Weight;
+use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, typed::Typed};
+use crate::compile::dimension::{Dimension, describe};
+use crate::compile::lower::{
+    logic, misspelt,
+    weight::{self, Weight},
+};
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Function, Num};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind};

@@ -1,26 +1,18 @@
 //! Functions: those declared with `let`, and the built-in ones.
 
-use crate::compile::context::dependence::Meant;
-use crate::compile::context::names::Vain;
-use crate::compile::context::parts::Frame;
-use crate::compile::context::parts::Given;
-use crate::compile::context::symbols::Scope;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    dependence::Meant,
+    names::Vain,
+    parts::{Frame, Given},
+    symbols::{Meaning, Scope, ScopeId, unknown},
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::builtin::DISTRIBUTIONS;
-use crate::compile::lower::counted_arguments;
-use crate::compile::lower::function;
-use crate::compile::lower::legs;
-use crate::compile::lower::margins;
-use crate::compile::lower::modes;
-use crate::compile::lower::name;
-use crate::compile::lower::process_names;
-use crate::compile::lower::select;
-use crate::compile::lower::shapes;
-use crate::compile::lower::traffic;
+use crate::compile::lower::{
+    builtin::DISTRIBUTIONS, counted_arguments, function, legs, margins, modes, name, process_names, select,
+    shapes, traffic,
+};
 use crate::logic::Term;
 use crate::model::function::{Signature, Special};
 use crate::model::{BuiltIn, Num};

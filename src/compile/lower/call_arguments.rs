@@ -1,7 +1,6 @@
 //! Named arguments of values that are calls: `prm(samples = 500)`, `guided(candidates = 24)`.
 
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{Context, Locals, Lowered, Reported, symbols::unknown};
 use crate::compile::dimension::Dimension;
 use crate::syntax::ast::{Binding, Expr, ExprKind, Ident, Value};
 use crate::syntax::codes::Code;

@@ -1,8 +1,6 @@
 //! What an expression gives is taken as a number, a place, an agent, a condition or a formula.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Lowered, MOST_NODES};
+use crate::compile::context::{Context, Lowered, MOST_NODES, number::Number, typed::Typed};
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::weight::Weight;
 use crate::logic::{Node, NodeId, TermId};

@@ -1,7 +1,6 @@
 //! Defaults of parameters that contradict their ranges.
 
-use crate::compile::context::entry::doubt;
-use crate::compile::context::{Context, Locals};
+use crate::compile::context::{Context, Locals, entry::doubt};
 use crate::compile::lower::form;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, ScenarioFile, UnaryOp};
 use crate::syntax::diagnostic::Diagnostic;

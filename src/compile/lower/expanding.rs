@@ -1,11 +1,12 @@
 //! Names are looked up, and expanded to what they stand for.
 
-use crate::compile::context::names::Vain;
-use crate::compile::context::symbols::{Meaning, ScopeId};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Lowered, Reported};
-use crate::compile::lower::weight;
-use crate::compile::lower::weight::Weight;
+use crate::compile::context::{
+    Context, Lowered, Reported,
+    names::Vain,
+    symbols::{Meaning, ScopeId},
+    typed::Typed,
+};
+use crate::compile::lower::weight::{self, Weight};
 use crate::syntax::ast::Expr;
 use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;

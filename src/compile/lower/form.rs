@@ -1,11 +1,8 @@
 //! The dimension of an expression in which something is wrong, as far as its form tells it: what it is compared with is
 //! judged by that. `distance(usr, door) < 2 kg` has two errors.
 
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals};
-use crate::compile::dimension;
-use crate::compile::dimension::Dimension;
+use crate::compile::context::{Context, Locals, symbols::Meaning, typed::Typed};
+use crate::compile::dimension::{self, Dimension};
 use crate::compile::lower::modes;
 use crate::model::function::Rule;
 use crate::model::{BuiltIn, Num};
@@ -17,7 +14,7 @@ const MOST_PARTS: u32 = 300;
 
 /// The dimension of what an expression is meant to be, if no more than its form is needed to tell.
 pub(crate) fn gist(context: &Context<'_>, expr: &Expr, locals: &Locals) -> Option<Dimension> {
-    Gist { context: context, depth: 0, left: MOST_PARTS }.of(expr, locals)
+    Gist { context, depth: 0, left: MOST_PARTS }.of(expr, locals)
 }
 
 struct Gist<'e, 'a> {
@@ -87,7 +84,7 @@ impl Gist<'_, '_> {
                 _ => None,
             };
         }
-        if modes::is_inside(&self.context, name, locals) {
+        if modes::is_inside(self.context, name, locals) {
             return None;
         }
         match self.context.look_up(name, locals.scope) {
@@ -105,7 +102,7 @@ impl Gist<'_, '_> {
     }
 
     fn of_call(&mut self, name: &str, arguments: &[Expr], locals: &Locals) -> Option<Dimension> {
-        if modes::is_inside(&self.context, name, locals) {
+        if modes::is_inside(self.context, name, locals) {
             return None;
         }
         if let Some((scope, Meaning::Let(decl))) = self.context.look_up(name, locals.scope)

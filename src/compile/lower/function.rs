@@ -1,14 +1,12 @@
 //! Built-in functions of values that are lowered.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, typed::Typed};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::convert::coordinates;
-use crate::compile::lower::legs;
-use crate::compile::lower::traffic;
-use crate::compile::lower::weight;
-use crate::compile::lower::weight::Weight;
+use crate::compile::lower::{
+    convert::coordinates,
+    legs, traffic,
+    weight::{self, Weight},
+};
 use crate::logic::Term;
 use crate::model::function::{Rule, Signature, Special};
 use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set};

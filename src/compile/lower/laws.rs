@@ -1,11 +1,9 @@
 //! Values of parameters: constants and distributions.
 
 use crate::base::decimal::Decimal;
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{Context, Locals, Lowered, symbols::unknown};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::builtin::DISTRIBUTIONS;
-use crate::compile::lower::laws;
+use crate::compile::lower::{builtin::DISTRIBUTIONS, laws};
 use crate::model::Parameter;
 use crate::model::stepper::stature;
 use crate::model::{Family, Law};

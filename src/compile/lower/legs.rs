@@ -1,9 +1,7 @@
 //! Words for walks: whether a route is done, and the numbers of its legs.
 
 use crate::base::tick::Tick;
-use crate::compile::context::number::Number;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{Context, Locals, Lowered, number::Number, typed::Typed};
 use crate::logic::{Aggregation, Term, Window};
 use crate::model::function::LegMeasure;
 use crate::model::{Bool, BuiltIn, Comparison, Field, Num, Who};

@@ -1,16 +1,15 @@
 //! Connectives, comparisons, membership.
 
 use crate::base::tick::Clock;
-use crate::compile::context::clock::Told;
-use crate::compile::context::parts::{Form, Part};
-use crate::compile::context::phrase;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    clock::Told,
+    parts::{Form, Part},
+    phrase,
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::form;
-use crate::compile::lower::margins;
-use crate::compile::lower::process_names;
-use crate::compile::lower::tally;
+use crate::compile::lower::{form, margins, process_names, tally};
 use crate::logic::{Aggregation, Node, NodeId, Relation, Term, TermId};
 use crate::model::{Bool, Comparison, Num, Place};
 use crate::syntax::ast::{BinaryOp, Expr};

@@ -1,9 +1,7 @@
 //! Which margins the formula of a robustness has, noted while it is lowered.
 
-use crate::compile::context::Context;
-use crate::compile::context::typed::Typed;
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::describe;
+use crate::compile::context::{Context, typed::Typed};
+use crate::compile::dimension::{Dimension, describe};
 use crate::model::{Arithmetic, Domain, Num};
 use crate::syntax::ast::BinaryOp;
 use crate::syntax::source::Span;

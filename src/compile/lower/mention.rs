@@ -1,8 +1,10 @@
 //! Whether an expression looks at more than one state, before it is lowered.
 
-use crate::compile::context::symbols::{Meaning, ScopeId};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals};
+use crate::compile::context::{
+    Context, Locals,
+    symbols::{Meaning, ScopeId},
+    typed::Typed,
+};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use std::collections::BTreeSet;
 
@@ -12,7 +14,7 @@ const DEEPEST: u32 = 1000;
 /// Whether the body of a quantifier looks at more than one state. Names are followed to what they stand for.
 pub(crate) fn mentions_time(context: &Context<'_>, body: &Expr, locals: &Locals, variable: &Ident) -> bool {
     let hidden = vec![variable.name.as_str()];
-    Search { context: context, followed: BTreeSet::new(), depth: 0 }
+    Search { context, followed: BTreeSet::new(), depth: 0 }
         .expr(body, &Names { locals: Some(locals), hidden, scope: locals.scope })
 }
 

@@ -1,12 +1,12 @@
 //! Units and words that are misspelt, so that they read as names.
 
 use crate::base::tick::Clock;
-use crate::compile::context::clock::Told;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{Context, Locals, Lowered, clock::Told};
 use crate::compile::dimension;
-use crate::compile::lower::builtin::{BUILT_IN, DISTRIBUTIONS};
-use crate::compile::lower::modes;
-use crate::compile::lower::process_names;
+use crate::compile::lower::{
+    builtin::{BUILT_IN, DISTRIBUTIONS},
+    modes, process_names,
+};
 use crate::model::BuiltIn;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::codes::Code;

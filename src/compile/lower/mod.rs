@@ -32,13 +32,14 @@ pub(crate) mod traffic;
 pub(crate) mod weight;
 
 use crate::base::tick::Tick;
-use crate::compile::context::number::Number;
-use crate::compile::context::parts::{Form, Part};
-use crate::compile::context::phrase;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::dimension;
-use crate::compile::dimension::Dimension;
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    number::Number,
+    parts::{Form, Part},
+    phrase,
+    typed::Typed,
+};
+use crate::compile::dimension::{self, Dimension};
 use crate::logic::Window;
 use crate::syntax::ast::BinaryOp;
 use crate::syntax::ast::Bound;
@@ -318,7 +319,7 @@ impl Context<'_> {
     ) -> Lowered<Typed> {
         if let Some(behaviour) = modes::compared(self, op, left) {
             let mode = self.lower(left, locals);
-            if let Some(compared) = modes::is_in_state(self, op, behaviour, mode, right) {
+            if let Some(compared) = modes::is_in_state(self, op, behaviour, &mode, right) {
                 return compared;
             }
         }

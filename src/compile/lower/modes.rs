@@ -1,9 +1,11 @@
 //! States of behaviours in expressions: `user.phone == looking`.
 
-use crate::compile::context::conducts::{lets, states};
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    conducts::{lets, states},
+    symbols::unknown,
+    typed::Typed,
+};
 use crate::compile::lower::process_names;
 use crate::model::{BehaviourId, Bool, BuiltIn, Comparison, Field, Num, Who};
 use crate::syntax::ast::BinaryOp;
@@ -87,10 +89,10 @@ pub(crate) fn is_in_state(
     context: &mut Context<'_>,
     op: BinaryOp,
     decl: &BehaviourDecl,
-    left: Lowered<Typed>,
+    left: &Lowered<Typed>,
     right: &Expr,
 ) -> Option<Lowered<Typed>> {
-    let (behaviour, who) = match left {
+    let (behaviour, who) = match *left {
         Ok(Typed::Mode { behaviour, who }) => (behaviour, who),
         Ok(_) => return None,
         // Whoever has it, its states are known; but a process may have a variable of that name.

@@ -1,21 +1,21 @@
 //! Names and members of sets.
 
-use crate::compile::context::dependence::Meant;
-use crate::compile::context::number::Number;
-use crate::compile::context::processes::Declared;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::wording::Use;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    dependence::Meant,
+    number::Number,
+    processes::Declared,
+    symbols::{Meaning, unknown},
+    typed::Typed,
+    wording::Use,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::builtin::BUILT_IN;
-use crate::compile::lower::counted_arguments;
-use crate::compile::lower::misspelt;
-use crate::compile::lower::modes;
-use crate::compile::lower::process_names;
-use crate::compile::lower::process_names::Found;
-use crate::compile::lower::weight;
-use crate::compile::lower::weight::Weight;
+use crate::compile::lower::{
+    builtin::BUILT_IN,
+    counted_arguments, misspelt, modes,
+    process_names::{self, Found},
+    weight::{self, Weight},
+};
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use crate::syntax::codes::Code;

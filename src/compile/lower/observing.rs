@@ -1,8 +1,10 @@
 //! Nodes of formulas and terms, atoms and signals: each is kept once.
 
-use crate::compile::context::Context;
-use crate::compile::context::parts::{Frame, Part};
-use crate::compile::context::wording::bare;
+use crate::compile::context::{
+    Context,
+    parts::{Frame, Part},
+    wording::bare,
+};
 use crate::compile::dimension::Dimension;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId};
 use crate::model::{AgentId, Bool, Num, Who};

@@ -1,12 +1,13 @@
 //! Names of processes, read from inside and from outside: `n`, `queue.n`, `sensor[2].works`.
 
-use crate::compile::context::parts::Frame;
-use crate::compile::context::processes::Declared;
-use crate::compile::context::processes::Inside;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::wording::Use;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    parts::Frame,
+    processes::{Declared, Inside},
+    symbols::{Meaning, unknown},
+    typed::Typed,
+    wording::Use,
+};
 use crate::compile::lower::modes;
 use crate::model::{Bool, Comparison, Domain, Function, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
@@ -168,16 +169,14 @@ pub(crate) fn member_of(
 ) -> Lowered<Typed> {
     match lowered {
         Typed::Agent(who) => modes::lower_mode(context, who, base.span, member),
-        Typed::Processes(_) => {
-            return context
-                .report(error!(E0305, base.span, "expected a process, found an array of processes";
-                    hint: "choose one: `{}[1].{}`", context.text(base.span), member.name));
-        }
+        Typed::Processes(_) => context
+            .report(error!(E0305, base.span, "expected a process, found an array of processes";
+                    hint: "choose one: `{}[1].{}`", context.text(base.span), member.name)),
         Typed::Vector(x, y, dimension) if matches!(member.name.as_str(), "x" | "y") => {
-            return Ok(Typed::Num(if member.name == "x" { x } else { y }, dimension));
+            Ok(Typed::Num(if member.name == "x" { x } else { y }, dimension))
         }
         Typed::Point(x, y) if matches!(member.name.as_str(), "x" | "y") => {
-            return Ok(Typed::Number(if member.name == "x" { x } else { y }));
+            Ok(Typed::Number(if member.name == "x" { x } else { y }))
         }
         found => {
             let name = &member.name;
@@ -190,7 +189,7 @@ pub(crate) fn member_of(
                 }
                 _ => "the values of agents are functions: `speed(user)`".to_owned(),
             };
-            return context.report(error!(E0305, base.span, "{said}"; hint: "{hint}"));
+            context.report(error!(E0305, base.span, "{said}"; hint: "{hint}"))
         }
     }
 }

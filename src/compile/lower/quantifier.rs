@@ -3,15 +3,14 @@
 //! Over states they become loops of the kernel's code. Over formulas they are written out, member by
 //! member, because each member's formula is monitored on its own.
 
-use crate::compile::context::parts::{Form, Given, Part};
-use crate::compile::context::phrase;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::typed::as_number;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    parts::{Form, Given, Part},
+    phrase,
+    typed::{Typed, as_number},
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::margins;
-use crate::compile::lower::mention;
-use crate::compile::lower::process_names;
+use crate::compile::lower::{margins, mention, process_names};
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, BinaryOp, Expr, ExprKind, Ident, Quantifier};

@@ -1,13 +1,16 @@
 //! The formula of a robustness, rewritten so that each of its conditions is a number compared with a bound.
 
 use crate::base::tick::Clock;
-use crate::compile::context::observed::Margins;
-use crate::compile::context::parts::{Form, Part};
-use crate::compile::context::{Context, Lowered, Reported};
+use crate::compile::context::{
+    Context, Lowered, Reported,
+    observed::Margins,
+    parts::{Form, Part},
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::logic;
-use crate::compile::lower::logic::relation;
-use crate::compile::lower::margin;
+use crate::compile::lower::{
+    logic::{self, relation},
+    margin,
+};
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
 use crate::model::{Bool, Comparison, Num};
 use crate::syntax::source::Span;
@@ -38,7 +41,7 @@ pub(crate) fn robustness(
                 hint: "comparisons with `<`, `<=`, `>`, `>=`, contacts and regions have a margin"));
     };
     let node = Rewriting {
-        context: context,
+        context,
         dimension,
         span,
         text: String::new(),
@@ -148,7 +151,7 @@ impl Rewriting<'_, '_> {
             }
             Form::Both(a, b) => {
                 let (a, b) = (self.part(a), self.part(b));
-                logic::both_or_neither(&mut self.context, a, b)
+                logic::both_or_neither(self.context, a, b)
             }
             Form::Plain(_) | Form::Each(..) | Form::Someone(..) => {
                 self.text = self.context.said_of(part);
@@ -172,7 +175,7 @@ impl Rewriting<'_, '_> {
             }
             Bool::Iff(a, b) => {
                 let (a, b) = (self.condition(a), self.condition(b));
-                logic::both_or_neither(&mut self.context, a, b)
+                logic::both_or_neither(self.context, a, b)
             }
             // Who has not come in yet has no numbers: then the truth decides.
             _ if self.context.roster.coming => {

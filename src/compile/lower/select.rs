@@ -1,7 +1,6 @@
 //! One of several values: the smallest, the largest, and `if`.
 
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Lowered, Reported};
+use crate::compile::context::{Context, Lowered, Reported, typed::Typed};
 use crate::compile::dimension::Dimension;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Bool, Num};

@@ -1,11 +1,13 @@
 //! Shapes and points of a scene, as expressions give them.
 
 use crate::base::geometry::{Polygon, Shape, Vec2, coordinate_fault};
-use crate::compile::context::dependence::Meant;
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    dependence::Meant,
+    number::Number,
+    symbols::{Meaning, unknown},
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
 use crate::model::{Period, RegionId};
 use crate::syntax::ast::{Expr, Ident, ShapeExpr};

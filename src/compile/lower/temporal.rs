@@ -1,8 +1,7 @@
 //! Temporal operators and windows over the states of a trace.
 
 use crate::base::tick::Tick;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{Context, Locals, Lowered, typed::Typed};
 use crate::logic::{Aggregation, Node, NodeId, Term, Window};
 use crate::syntax::ast::expression::{Temporal, TemporalPair};
 use crate::syntax::ast::{Aggregate, Bound};

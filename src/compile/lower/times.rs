@@ -2,10 +2,7 @@
 
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
-use crate::compile::context::moments;
-use crate::compile::context::number::Number;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Lowered};
+use crate::compile::context::{Context, Lowered, moments, number::Number, typed::Typed};
 use crate::compile::dimension::Dimension;
 use crate::syntax::source::Span;
 

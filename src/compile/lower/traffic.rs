@@ -1,9 +1,7 @@
 //! Measures of pedestrian dynamics: counts at lines; densities, speeds and times in regions.
 
 use crate::base::tick::Tick;
-use crate::compile::context::number::Number;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{Context, Locals, Lowered, number::Number, typed::Typed};
 use crate::model::function::Special;
 use crate::model::{
     Arithmetic, Bool, BuiltIn, Field, Fold, Function, LineId, Num, RegionId, Scenario, Set, Who,

@@ -3,8 +3,7 @@
 //! `let f(v) = v + v` doubles what it is given: called 27 times in itself it is larger than any memory, though each
 //! call is a few words. So whatever is copied counts as if it had been written out.
 
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Lowered, MOST_NODES};
+use crate::compile::context::{Context, Lowered, MOST_NODES, typed::Typed};
 use crate::model::visit::Part;
 use crate::model::{Bool, Num, Process, Timing};
 use crate::syntax::source::Span;

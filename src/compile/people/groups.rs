@@ -4,19 +4,15 @@
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::compile::behaviour::attachment;
-use crate::compile::context::conducts::With;
-use crate::compile::context::people::People;
-use crate::compile::context::sighting::Sighting;
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{
+    Context, Locals, Lowered, conducts::With, people::People, sighting::Sighting, symbols::Meaning,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::people;
-use crate::compile::people::headed;
-use crate::compile::people::intended::{Intended, parted};
-use crate::compile::people::intentions;
-use crate::compile::people::kinds;
-use crate::compile::people::positions;
-use crate::compile::people::recordings;
+use crate::compile::people::{
+    self, headed,
+    intended::{Intended, parted},
+    intentions, kinds, positions, recordings,
+};
 use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
 use crate::syntax::ast::{Field, GroupDecl, Recorded, Value};
 use std::sync::Arc;

@@ -1,15 +1,17 @@
 //! The intentions of people who were recorded, from their fields and where they were seen.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::sighting::Sighting;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    number::Number,
+    sighting::Sighting,
+    symbols::{Meaning, unknown},
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::laws;
-use crate::compile::lower::laws::distribution;
-use crate::compile::people::intended::STANDS;
-use crate::compile::people::intended::{Goals, Intended, RECORDED, destinations, is_recorded, weights};
+use crate::compile::lower::laws::{self, distribution};
+use crate::compile::people::intended::{
+    Goals, Intended, RECORDED, STANDS, destinations, is_recorded, weights,
+};
 use crate::model::{Body, Goal, Law, Leg, Parameter, Route, Start};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Field, Value};
 use crate::syntax::codes::Code;

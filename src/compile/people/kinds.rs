@@ -1,13 +1,12 @@
 //! Kinds of agents: parameters inherited, preset, overridden.
 
-use crate::compile::context::kind::FIELDS;
-use crate::compile::context::kind::{Kind, Planning};
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    kind::{FIELDS, Kind, Planning},
+    symbols::{Meaning, unknown},
+};
 use crate::compile::lower::laws;
-use crate::compile::people::planners;
-use crate::compile::people::refused;
-use crate::compile::people::stepping;
+use crate::compile::people::{planners, refused, stepping};
 use crate::compile::presets::{PRESETS, law};
 use crate::compile::scene::periodic;
 use crate::model::{self, Body, Law, Parameter, Planner, Stepper};

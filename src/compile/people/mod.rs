@@ -17,17 +17,17 @@ pub(crate) mod tracks;
 
 use crate::base::geometry::Vec2;
 use crate::compile::behaviour::attachment;
-use crate::compile::context::conducts::With;
-use crate::compile::context::kind::Kind;
-use crate::compile::context::people::People;
-use crate::compile::context::people::entities;
-use crate::compile::context::sighting::Sighting;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{
+    Context, Locals, Lowered,
+    conducts::With,
+    kind::Kind,
+    people::{People, entities},
+    sighting::Sighting,
+    symbols::{Meaning, unknown},
+};
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::laws;
-use crate::compile::people::intended::STANDS;
-use crate::compile::people::intended::{Intended, parted};
+use crate::compile::people::intended::{Intended, STANDS, parted};
 use crate::model::{Agent, AgentId, Body, Law, Parameter, Route, Source, Start};
 use crate::syntax::ast::{AgentsDecl, Expr, Field, Ident};
 use crate::syntax::codes::Code;

@@ -5,10 +5,7 @@
 //! point is refused where a barrier would leave less than half of the radius.
 
 use crate::base::geometry::{Bounds, Shape, Vec2, rotated};
-use crate::compile::context::Context;
-use crate::compile::context::people::People;
-use crate::compile::context::roster;
-use crate::compile::context::symbols::Meaning;
+use crate::compile::context::{Context, people::People, roster, symbols::Meaning};
 use crate::compile::scene::imports;
 use crate::model::{Agent, AgentId, Barrier, Obstacle, Parameter, Position};
 use crate::syntax::codes::Code;

@@ -1,16 +1,17 @@
 //! The fields of planned kinds that are no parameters of a body: `roadmap`, `profile`, `avoid`, and both sides of
 //! `limit acceleration`.
 
-use crate::compile::context::kind::FORCE;
-use crate::compile::context::kind::{Kind, is_of_force};
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{
+    Context, Locals, Lowered,
+    kind::{FORCE, Kind, is_of_force},
+    symbols::unknown,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::call_arguments;
-use crate::compile::lower::call_arguments::{Argument, call, word};
-use crate::compile::lower::laws;
-use crate::compile::people::kinds;
-use crate::compile::people::routes;
+use crate::compile::lower::{
+    call_arguments::{self, Argument, call, word},
+    laws,
+};
+use crate::compile::people::{kinds, routes};
 use crate::compile::presets;
 use crate::model::planner::{RoadmapRule, SpeedRule};
 use crate::model::{self, Parameter};

@@ -1,14 +1,14 @@
 //! Where agents start, and with which velocity.
 
 use crate::base::geometry::Vec2;
-use crate::compile::context::people::People;
-use crate::compile::context::symbols::{Entry, Meaning};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::describe;
-use crate::compile::lower::misspelt;
-use crate::compile::lower::shapes;
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    people::People,
+    symbols::{Entry, Meaning},
+    typed::Typed,
+};
+use crate::compile::dimension::{Dimension, describe};
+use crate::compile::lower::{misspelt, shapes};
 use crate::compile::nearest::nearest;
 use crate::model::{Position, Start, TOP_SPEED, Who};
 use crate::syntax::ast::BinaryOp;

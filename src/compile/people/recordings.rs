@@ -1,11 +1,12 @@
 //! Recordings as start states: who is chosen among those who are seen at a time.
 
-use crate::compile::context::sighting::{Sighting, Tracks};
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    sighting::{Sighting, Tracks},
+    symbols::{Meaning, unknown},
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::people::places;
-use crate::compile::people::tracks::SHOWN_LINES;
+use crate::compile::people::{places, tracks::SHOWN_LINES};
 use crate::model::Law;
 use crate::syntax::ast::{Expr, Ident, Recorded, Whom};
 use crate::syntax::codes::Code;
@@ -49,7 +50,7 @@ pub(crate) fn sighted(context: &mut Context<'_>, recorded: &Recorded, single: bo
     let ids: Vec<Lowered<u32>> = whom.map(|whom| identity(context, &whom.id)).collect();
     let index = named_tracks(context, &recorded.tracks);
     let (time, ids, index) = (time?, ids.into_iter().collect::<Lowered<Vec<_>>>()?, index?);
-    let Some(Some(tracks)) = context.tracks.recordings.get(index) else { return Err(Reported) };
+    let Some(Some(tracks)) = context.tracks.known.get(index) else { return Err(Reported) };
     let found = tracks.at(time.value);
     let is_live = matches!(tracks, Tracks::Live { .. });
     let groups = match tracks {

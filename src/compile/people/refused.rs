@@ -1,9 +1,7 @@
 //! The parts of values that are refused: what is wrong with them is said as well.
 
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::{Context, Locals};
-use crate::compile::lower::laws::distribution;
-use crate::compile::lower::shapes;
+use crate::compile::context::{Context, Locals, symbols::Meaning};
+use crate::compile::lower::{laws::distribution, shapes};
 use crate::compile::people::{planners, routes};
 use crate::syntax::ast::{Expr, ExprKind, Value};
 

@@ -1,14 +1,14 @@
 //! Routes and moves.
 
 use crate::base::tick::Tick;
-use crate::compile::context::people::People;
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, people::People, symbols::Meaning, typed::Typed,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::laws;
-use crate::compile::lower::laws::advise_bounds;
-use crate::compile::lower::shapes;
+use crate::compile::lower::{
+    laws::{self, advise_bounds},
+    shapes,
+};
 use crate::compile::scene::periodic;
 use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
 use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};

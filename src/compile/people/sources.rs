@@ -7,18 +7,15 @@
 
 use crate::base::math;
 use crate::compile::behaviour::attachment;
-use crate::compile::context::clock::Told;
-use crate::compile::context::people::People;
-use crate::compile::context::people::entities;
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    clock::Told,
+    people::{People, entities},
+    symbols::Meaning,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::laws;
-use crate::compile::lower::laws::advise_bounds;
-use crate::compile::people;
-use crate::compile::people::kinds;
-use crate::compile::people::positions;
-use crate::compile::people::routes;
+use crate::compile::lower::laws::{self, advise_bounds};
+use crate::compile::people::{self, kinds, positions, routes};
 use crate::compile::scene::periodic;
 use crate::model::{Family, Law, Route, Source};
 use crate::syntax::ast::process::SourceDecl;

@@ -10,8 +10,7 @@
 use crate::base::decimal::Decimal;
 use crate::base::math::{at_least, at_most, exp};
 use crate::base::tick::Clock;
-use crate::compile::context::Context;
-use crate::compile::context::symbols::Meaning;
+use crate::compile::context::{Context, symbols::Meaning};
 use crate::model::{Agent, AgentId, Parameter};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;

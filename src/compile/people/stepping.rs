@@ -1,13 +1,9 @@
 //! The fields of stepped kinds that are no parameters of a body: `gait` and `search`.
 
-use crate::compile::context::kind::Kind;
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{Context, Locals, Lowered, Reported, kind::Kind, symbols::unknown};
 use crate::compile::dimension::Dimension;
-use crate::compile::files;
-use crate::compile::files::Files;
-use crate::compile::lower::call_arguments;
-use crate::compile::lower::call_arguments::{Argument, call, word};
+use crate::compile::files::{self, Files};
+use crate::compile::lower::call_arguments::{self, Argument, call, word};
 use crate::model::{GaitRule, SearchRule};
 use crate::syntax::ast::{Field, ScenarioFile, Value};
 use crate::syntax::codes::Code;

@@ -3,10 +3,11 @@
 //! place (`crate::data::tracks`).
 
 use crate::base::random::MOST_TRIALS;
-use crate::compile::context::entry;
-use crate::compile::context::sighting::Tracks;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, entry,
+    sighting::Tracks,
+    symbols::{Meaning, unknown},
+};
 use crate::compile::dimension::Dimension;
 use crate::compile::files::{Files, missing};
 use crate::compile::lower::call_arguments;
@@ -41,7 +42,7 @@ pub(crate) fn tracks<'a>(
     body: &'a [Field],
     files: &Files,
 ) {
-    let index = context.tracks.recordings.len();
+    let index = context.tracks.known.len();
     let fields = track_fields(context, body);
     let tracks = match (files.seen(&name.name), file) {
         (Some(seen), _) => {
@@ -65,7 +66,7 @@ pub(crate) fn tracks<'a>(
             )
         }
     };
-    context.tracks.recordings.push(tracks.ok());
+    context.tracks.known.push(tracks.ok());
     context.tracks.destinations.push(match file {
         Some((_, path)) => files.get(&beside(&path.value)).and_then(|bytes| {
             places(std::str::from_utf8(bytes).map_err(|_| "the destinations are not UTF-8 text".to_owned())?)

@@ -1,9 +1,8 @@
 //! The commands of processes: guards, times, branches and their updates.
 
-use crate::compile::context::processes::Inside;
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::typed::as_number;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, processes::Inside, symbols::unknown, typed::as_number,
+};
 use crate::compile::dimension::Dimension;
 use crate::compile::process::timing;
 use crate::model::process::wrong_weights;

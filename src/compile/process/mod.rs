@@ -8,17 +8,17 @@ pub(crate) mod parts;
 pub(crate) mod reachable;
 pub(crate) mod timing;
 
-use crate::compile::context::number::Number;
-use crate::compile::context::people::People;
-use crate::compile::context::people::entities;
-use crate::compile::context::processes::Inside;
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    number::Number,
+    people::{People, entities},
+    processes::Inside,
+    symbols::unknown,
+    typed::Typed,
+};
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::call;
-use crate::compile::process::parts::Writing;
-use crate::compile::process::reachable::Lines;
+use crate::compile::process::{parts::Writing, reachable::Lines};
 use crate::syntax::ast::Broken;
 
 use crate::model::{Bool, Command, Domain, Num, Process, Processes, Timing, Variable};

@@ -6,8 +6,7 @@
 //! show while running.
 
 use crate::base::tick::Clock;
-use crate::compile::context::Context;
-use crate::compile::context::clock::Told;
+use crate::compile::context::{Context, clock::Told};
 use crate::compile::lower::weight::Weight;
 use crate::compile::process::parts::{Part, Scope, Writing};
 use crate::model::process::wrong_weights;

@@ -3,12 +3,12 @@
 
 use crate::compile::context::{Context, Locals, Lowered, Reported};
 use crate::compile::nearest::nearest;
-use crate::compile::query::bounds;
-use crate::compile::query::bounds::WIDEST;
-use crate::compile::query::families::Allowance;
-use crate::compile::query::measures;
-use crate::compile::query::measures::Sketch;
-use crate::compile::query::methods::{Stated, Theta, stated};
+use crate::compile::query::{
+    bounds::{self, WIDEST},
+    families::Allowance,
+    measures::{self, Sketch},
+    methods::{Stated, Theta, stated},
+};
 use crate::stats::spec::{Argument, Kind};
 use crate::stats::{Chosen, Spec};
 use crate::syntax::ast::{Clauses, Method};

@@ -1,10 +1,10 @@
 //! The worlds that queries set up with `under`: their values, and these in words.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::{Locals, Lowered, Reported};
-use crate::compile::query::compiler::{Compiler, Site};
-use crate::compile::query::settings;
+use crate::compile::context::{Locals, Lowered, Reported, number::Number, symbols::ScopeId};
+use crate::compile::query::{
+    compiler::{Compiler, Site},
+    settings,
+};
 use crate::syntax::ast::Binding;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;

@@ -1,16 +1,13 @@
 //! Checks and comparisons: claims, thresholds, tests, sides.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::query::bindings;
-use crate::compile::query::clauses;
-use crate::compile::query::compiler::Compiler;
-use crate::compile::query::families::Allowance;
-use crate::compile::query::measures;
-use crate::compile::query::measures::{Observed, Sketch, What};
-use crate::compile::query::methods;
-use crate::compile::query::methods::{DEFAULT_ALPHA, DEFAULT_DELTA, Theta};
+use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, symbols::ScopeId};
+use crate::compile::query::{
+    bindings, clauses,
+    compiler::Compiler,
+    families::Allowance,
+    measures::{self, Observed, Sketch, What},
+    methods::{self, DEFAULT_ALPHA, DEFAULT_DELTA, Theta},
+};
 use crate::compile::study::{Ask, Measure, MeasureKind, Target};
 use crate::stats::procedures::MEAN_RUNNING;
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};

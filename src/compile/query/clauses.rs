@@ -1,13 +1,13 @@
 //! Clauses of comparisons and rankings: width, error and procedure.
 
 use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::query::arguments;
-use crate::compile::query::bounds;
-use crate::compile::query::bounds::WIDEST;
-use crate::compile::query::families::Allowance;
-use crate::compile::query::measures::Sketch;
-use crate::compile::query::methods;
-use crate::compile::query::methods::{DEFAULT_DELTA, DEFAULT_LOSS, Stated, stated};
+use crate::compile::query::{
+    arguments,
+    bounds::{self, WIDEST},
+    families::Allowance,
+    measures::Sketch,
+    methods::{self, DEFAULT_DELTA, DEFAULT_LOSS, Stated, stated},
+};
 use crate::stats::procedures::BETTING;
 use crate::stats::spec::Serves;
 use crate::stats::{Chosen, Spec};

@@ -1,15 +1,16 @@
 //! The worlds of a call, and what is observed in each.
 
 use crate::base::decimal::Decimal;
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::{Context, Lowered};
+use crate::compile::context::{
+    Context, Lowered,
+    number::Number,
+    symbols::{Meaning, ScopeId},
+};
 use crate::compile::files::Files;
-use crate::compile::query::measures;
-use crate::compile::query::measures::{Observed, Sketch};
-use crate::compile::query::settings;
-use crate::compile::query::settings::Setting;
+use crate::compile::query::{
+    measures::{self, Observed, Sketch},
+    settings::{self, Setting},
+};
 use crate::compile::study::{Column, Measure, Query, Target};
 use crate::compile::world;
 use crate::model::Scenario;
@@ -64,7 +65,7 @@ pub(crate) struct Compiler<'a> {
     pub(crate) measured: BTreeMap<Key, Vec<Decimal>>,
 }
 
-impl<'a> Compiler<'a> {
+impl Compiler<'_> {
     /// Values of the swept parameters in words.
     pub(crate) fn described(
         &self,

@@ -1,16 +1,16 @@
 //! Measures: what is asked of the distribution of traces.
 
 use crate::base::tick::Clock;
-use crate::compile::context::clock::Told;
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::{Meaning, ScopeId};
-use crate::compile::context::typed::Typed;
-use crate::compile::context::wording::bare;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    clock::Told,
+    number::Number,
+    symbols::{Meaning, ScopeId},
+    typed::Typed,
+    wording::bare,
+};
 use crate::compile::dimension::Dimension;
-use crate::compile::lower::form;
-use crate::compile::lower::logic;
-use crate::compile::lower::robustness;
+use crate::compile::lower::{form, logic, robustness};
 use crate::compile::study::{Column, MeasureKind};
 use crate::logic::{
     Invalid, Monitor, Node, NodeId, Part, Relation, Robustness, SignalMonitor, SignalRobustness, Term,

@@ -3,13 +3,12 @@
 use crate::compile::context::{Context, Locals, Lowered};
 use crate::compile::dimension::Dimension;
 use crate::compile::nearest::nearest;
-use crate::compile::query::arguments;
-use crate::compile::query::arguments::Setting;
-use crate::compile::query::bounds;
-use crate::compile::query::bounds::WIDEST;
-use crate::compile::query::families::Allowance;
-use crate::compile::query::measures;
-use crate::compile::query::measures::{Sketch, What};
+use crate::compile::query::{
+    arguments::{self, Setting},
+    bounds::{self, WIDEST},
+    families::Allowance,
+    measures::{self, Sketch, What},
+};
 use crate::stats::procedures::{EPROCESS, MEAN_FIXED, MEAN_WITHIN, PROBABILITY_WITHIN, QUANTILE_FIXED};
 use crate::stats::spec::{Kind, Make, Serves};
 use crate::stats::{Chosen, Spec, splitting};

@@ -17,14 +17,10 @@ pub(crate) mod sweeps;
 pub(crate) mod titles;
 
 use crate::base::decimal::Decimal;
-use crate::compile::context::number::Number;
-use crate::compile::context::roster::Starts;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::wording::Texts;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::lower::call;
-use crate::compile::lower::name;
-use crate::compile::lower::traffic;
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, number::Number, roster::Starts, symbols::ScopeId, wording::Texts,
+};
+use crate::compile::lower::{call, name, traffic};
 use crate::compile::people::kinds;
 use crate::compile::query::families::Allowance;
 use crate::compile::study::{Ask, Query, Said, Study, World};

@@ -1,17 +1,15 @@
 //! Rankings: their options, each of which is a world and perhaps a move in it, their score and their procedure.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::ScopeId;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::query::bindings;
-use crate::compile::query::checks::unlike;
-use crate::compile::query::clauses;
-use crate::compile::query::compiler::Compiler;
-use crate::compile::query::families::Allowance;
-use crate::compile::query::measures;
-use crate::compile::query::measures::{Observed, Sketch, What};
-use crate::compile::query::settings;
-use crate::compile::query::settings::Setting;
+use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, symbols::ScopeId};
+use crate::compile::query::{
+    bindings,
+    checks::unlike,
+    clauses,
+    compiler::Compiler,
+    families::Allowance,
+    measures::{self, Observed, Sketch, What},
+    settings::{self, Setting},
+};
 use crate::compile::study::{Ask, MeasureKind, RankOption};
 use crate::logic::Root;
 use crate::logic::Tree;

@@ -2,12 +2,12 @@
 
 use crate::base::decimal::Decimal;
 use crate::base::math;
-use crate::compile::context::number::Number;
-use crate::compile::context::symbols::{Meaning, unknown};
-use crate::compile::context::{Context, Locals, Lowered, Reported};
-use crate::compile::dimension;
-use crate::compile::dimension::Dimension;
-use crate::compile::dimension::Unit;
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    number::Number,
+    symbols::{Meaning, unknown},
+};
+use crate::compile::dimension::{self, Dimension, Unit};
 use crate::syntax::ast::{Expr, ExprKind, UnitExpr, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;

@@ -1,10 +1,10 @@
 //! The points of a call: every combination of the values that `--set` names.
 
-use crate::compile::context::number::Number;
-use crate::compile::context::{Locals, Lowered};
-use crate::compile::query::compiler::Compiler;
-use crate::compile::query::settings;
-use crate::compile::query::settings::{MOST_POINTS, Setting};
+use crate::compile::context::{Locals, Lowered, number::Number};
+use crate::compile::query::{
+    compiler::Compiler,
+    settings::{self, MOST_POINTS, Setting},
+};
 use std::collections::BTreeMap;
 
 /// All combinations, values of the first setting slowest. Values are computed in the plain world.

@@ -4,14 +4,10 @@ pub(crate) mod imports;
 pub(crate) mod periodic;
 
 use crate::base::geometry::{Segment, Shape, Vec2};
-use crate::compile::context::entry;
-use crate::compile::context::symbols::Meaning;
-use crate::compile::context::{Context, Locals, Lowered, Reported};
+use crate::compile::context::{Context, Locals, Lowered, Reported, entry, symbols::Meaning};
 use crate::compile::files::Files;
-use crate::compile::lower::builtin::DISTRIBUTIONS;
-use crate::compile::lower::shapes;
-use crate::compile::scene::imports::fields::Import;
-use crate::compile::scene::imports::walls;
+use crate::compile::lower::{builtin::DISTRIBUTIONS, shapes};
+use crate::compile::scene::imports::{fields::Import, walls};
 use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, SceneItem};

@@ -1,12 +1,11 @@
 //! Drawings of imports: files are read, filtered and moved to their places.
 
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::{Context, Lowered};
+use crate::compile::context::{Context, Lowered, symbols::unknown};
 use crate::compile::files::{Files, missing};
-use crate::compile::scene::imports::fields;
-use crate::compile::scene::imports::fields::Import;
-use crate::compile::scene::imports::filter;
-use crate::compile::scene::imports::filter::Compared;
+use crate::compile::scene::imports::{
+    fields::{self, Import},
+    filter::{self, Compared},
+};
 use crate::data::geometry::{self, Drawing, Fault, Format, Geometry, GeometryError, PropertyValue};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;

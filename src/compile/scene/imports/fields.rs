@@ -1,9 +1,7 @@
 //! Imports as written, and their fields: unit, origin, projection, snapping.
 
 use crate::base::geometry::Vec2;
-use crate::compile::context::symbols::unknown;
-use crate::compile::context::typed::Typed;
-use crate::compile::context::{Context, Locals, Lowered};
+use crate::compile::context::{Context, Locals, Lowered, symbols::unknown, typed::Typed};
 use crate::compile::dimension::Dimension;
 use crate::data::geometry::Format;
 use crate::syntax::ast::{Expr, ExprKind, Field, Text, Value};

@@ -6,8 +6,10 @@ pub(crate) mod filter;
 
 use crate::compile::context::{Context, Lowered};
 use crate::compile::files::Files;
-use crate::compile::scene::imports::drawing::{shown, unreadable};
-use crate::compile::scene::imports::fields::Import;
+use crate::compile::scene::imports::{
+    drawing::{shown, unreadable},
+    fields::Import,
+};
 
 use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::data::geometry::{self, Door, Form, Format, Opened, Placement, placement::middle, plan::TOUCHING};
