@@ -89,6 +89,8 @@ impl Person {
             Parameter::Headway => self.headway,
             Parameter::Hold => self.hold,
             Parameter::Attention => 1.0,
+            // Nobody is of the collision-free speed model.
+            Parameter::Swerve | Parameter::SwerveRange | Parameter::WallSwerve | Parameter::WallRange => 0.0,
             // Of plans: 2 is a value that each of them may have.
             _ => 2.0,
         }

@@ -58,6 +58,7 @@ mod semantics;
 mod shapes;
 mod shards;
 mod signal_semantics;
+mod speeds;
 mod splitting;
 mod start;
 mod statistics;

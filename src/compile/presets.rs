@@ -1,29 +1,40 @@
-//! Named parameter sets of the social force model, with their sources.
+//! Named parameter sets of models of people, with their sources.
 
-use crate::model::{Family, Law, Parameter};
+use crate::model::{Family, Kind, Law, Parameter};
 
 /// A named parameter set.
 pub struct Preset {
     /// Its name.
     pub name: &'static str,
+    /// The model whose numbers they are.
+    pub model: Kind,
     /// Where it comes from, and how it was read.
     pub source: &'static str,
 }
 
 /// All presets.
-pub const PRESETS: [Preset; 2] = [
+pub static PRESETS: [Preset; 3] = [
     Preset {
         name: "helbing2000",
+        model: Kind::Sfm,
         source: "Helbing, Farkas, Vicsek, Nature 407, 487 (2000): isotropic, A = 2000 N, B = 0.08 m, \
                  k1 = 1.2e5 kg/s^2, k2 = 2.4e5 kg/(m s), tau = 0.5 s, 80 kg, diameters 0.5 to 0.7 m; driving speeds \
                  N(1.34, 0.26) m/s of Helbing and Molnár 1995",
     },
     Preset {
         name: "smc1",
+        model: Kind::Sfm,
         source: "this project's own, fitted in this order to Weidmann's fundamental diagram of one stream, to flows at doors \
                  of 0.8 to 2.4 m, to the clearance of head-on pairs in the recording eth, and to counterflow: \
                  isotropic, A = 140 N, B = 0.35 m, foresight 1.5 s, headway 0.65 s, tau = 0.25 s, radii 0.18 to 0.22 m; \
                  mass, driving speeds and contact of helbing2000",
+    },
+    Preset {
+        name: "cfs2",
+        model: Kind::Cfs,
+        source: "the defaults of the collision-free speed model, version 2, in JuPedSim 1.4.2 (after Tordeux, Chraibi, \
+                 Seyfried 2016): time gap 1 s, radius 0.2 m, neighbours 8 and 0.1 m, walls 5 and 0.02 m; mass and driving \
+                 speeds of helbing2000",
     },
 ];
 
@@ -32,6 +43,7 @@ pub fn law(preset: &str, parameter: Parameter) -> Option<Law> {
     use Parameter::{A, B, Foresight, Headway, K1, K2, Mass, Radius, Speed, Tau};
     let (radii, special): ((f64, f64), &[(Parameter, f64)]) = match preset {
         "smc1" => ((0.18, 0.22), &[(A, 140.0), (B, 0.35), (Foresight, 1.5), (Headway, 0.65), (Tau, 0.25)]),
+        "cfs2" => ((0.2, 0.2), &[(Radius, 0.2)]),
         "helbing2000" => ((0.25, 0.35), &[(A, 2000.0), (B, 0.08), (Tau, 0.5)]),
         _ => return None,
     };
@@ -55,12 +67,11 @@ pub fn law(preset: &str, parameter: Parameter) -> Option<Law> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Kind;
 
     #[test]
     fn every_preset_gives_every_parameter_that_has_no_default() {
         for preset in &PRESETS {
-            for parameter in Parameter::of_kind(Kind::Sfm) {
+            for parameter in Parameter::of_kind(preset.model) {
                 let given =
                     parameter.description().default.is_some() || law(preset.name, parameter).is_some();
                 assert!(given, "{} {}", preset.name, parameter.name());

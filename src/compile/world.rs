@@ -3,6 +3,7 @@
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::behaviour;
+use crate::compile::context::symbols::Param;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     clock::{self, Told},
@@ -15,6 +16,7 @@ use crate::compile::context::{
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::files::Files;
+use crate::compile::lower::choices;
 use crate::compile::lower::{
     builtin::{BUILT_IN, OPERATORS},
     call, defaults,
@@ -59,7 +61,9 @@ fn declare<'a>(context: &mut Context<'a>, file: &'a ScenarioFile) {
     for item in &file.items {
         let (name, meaning) = match item {
             Item::Const { name, value } => (name, Meaning::Constant(value)),
-            Item::Param { name, value, range } => (name, Meaning::Param { value, range: range.as_ref() }),
+            Item::Param { name, value, range, choices } => {
+                (name, Meaning::Param(Param { value, range: range.as_ref(), choices }))
+            }
             Item::Let(decl) => (&decl.name, Meaning::Let(decl)),
             Item::Kind(decl) => (&decl.name, Meaning::Kind(decl)),
             Item::Agents(decl) => (&decl.name, Meaning::Declared),
@@ -189,6 +193,12 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
     let behaviours = behaviour::settle_behaviours(context, &mut people, count);
     let moves = routes::all_moves(context, file, &people);
     check_unused(context, file);
+    let choices = file.items.iter().filter_map(|item| match item {
+        Item::Param { name, choices, .. } if !choices.is_empty() => Some((name, name.span)),
+        _ => None,
+    });
+    let used = std::mem::take(&mut context.names.chosen_by);
+    choices::check_used(context, &choices.collect::<Vec<_>>(), &used);
     check_titles(context, file);
     places::check_places(context, &mut people);
     if clock.is_err() || context.sink.failed() {
@@ -239,7 +249,10 @@ fn check_unused<'a>(context: &mut Context<'a>, file: &'a ScenarioFile) {
                 let lowered = lower_declared(context, name, value);
                 let _ = context.unchanging(lowered, value);
             }
-            Item::Param { name, value, range } => {
+            Item::Param { name, value, choices, .. } if !choices.is_empty() => {
+                choices::check(context, name, value, choices);
+            }
+            Item::Param { name, value, range, .. } => {
                 let declared = lower_declared(context, name, value);
                 if let Some(range) = range {
                     check_range(context, name, (declared, value), range);

@@ -28,10 +28,17 @@ pub(crate) fn written(context: &Context<'_>, file: &ScenarioFile) -> Written {
     let mut out = Written { with: written_with(context), ..Written::default() };
     for item in &file.items {
         match item {
-            Item::Param { name, value, range } => {
-                let range = range.as_ref().map_or(String::new(), |(low, high)| {
-                    format!(" in {} .. {}", context.text(low.span), context.text(high.span))
-                });
+            Item::Param { name, value, range, choices } => {
+                let range = match range {
+                    Some((low, high)) => {
+                        format!(" in {} .. {}", context.text(low.span), context.text(high.span))
+                    }
+                    None if choices.is_empty() => String::new(),
+                    None => {
+                        let names: Vec<&str> = choices.iter().map(|choice| choice.name.as_str()).collect();
+                        format!(" in {}", names.join(", "))
+                    }
+                };
                 out.parameters.push(format!("{} = {}{range}", name.name, context.text(value.span)));
             }
             Item::Let(decl) => out.names.push(written_let(context, decl)),

@@ -20,6 +20,9 @@
 //! body near another, 1 to 4 run in one pass; where it has, in several with the same operations, so the
 //! path taken changes no bit. Slots that are absent or in a lane without a trial keep their bytes.
 //!
+//! An agent of the collision-free speed model has neither driving nor force: after 6 it gets the velocity that it has up to
+//! the next state (`speed`), so that 2 and 4 are its step of Euler.
+//!
 //! In 3 v0 is at most what the headway to those ahead allows (`force::ahead`), as it was at the beginning of the step. An
 //! agent that stands, and so has no v0, is driven back to where it came to rest (`rest`).
 
@@ -34,11 +37,13 @@ use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
 use super::rest::{back, rest};
+use super::speed;
 use super::start;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::math::exp;
 use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
@@ -50,10 +55,12 @@ use crate::model::{Periods, TOP_SPEED};
 #[derive(Clone, Debug)]
 pub struct Scratch {
     level: Level,
-    lanewise: Lanewise,
-    cells: Cells,
+    pub(super) lanewise: Lanewise,
+    pub(super) cells: Cells,
     contacts: Contacts,
     sums: Vec<Sum>,
+    /// The slowness that the room ahead imposes in the collision-free speed model.
+    pub(super) rooms: Vec<Sum>,
     /// Positions at which `contacts` was made.
     seen_x: Vec<Lanes>,
     seen_y: Vec<Lanes>,
@@ -87,6 +94,7 @@ impl Scratch {
             cells: Cells::default(),
             contacts: Contacts::default(),
             sums: Vec::new(),
+            rooms: Vec::new(),
             seen_x: Vec::new(),
             seen_y: Vec::new(),
             seen: None,
@@ -119,12 +127,17 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
     for block in 0..state.motion.x.len() {
         for lane in state.layout.slots_of(lanes).iter() {
             state.prepare(Slot { block, lane }, dt);
+            state.forget_noise(Slot { block, lane });
         }
     }
     scratch.lanewise.forget();
     dispatch!(scratch.level, simd => {
         find_forces(simd, program, state, scratch);
-        keep_forces(simd, state, scratch, state.layout.slots_of(lanes));
+        let slots = state.layout.slots_of(lanes);
+        keep_forces(simd, state, scratch, slots);
+        if program.forces.speeds.is_some() {
+            speed::set(simd, program, state, scratch, slots);
+        }
     });
 }
 
@@ -243,7 +256,12 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
             rest(part, state, block, moving);
         }
     }
-    let mover = Mover { program, draws: Draws::at(state), half: 0.5 * program.dt };
+    let mover = Mover {
+        program,
+        draws: Draws::at(state),
+        half: 0.5 * program.dt,
+        forgets: exp(-program.dt / speed::FORGETS),
+    };
     if scratch.contacts.is_empty() {
         for (block, &moving) in scratch.moving.iter().enumerate() {
             if !moving.is_empty() {
@@ -282,6 +300,8 @@ struct Mover<'a> {
     draws: Draws,
     /// Half a step, s.
     half: f64,
+    /// Share of the noise that is left after a step in the collision-free speed model.
+    forgets: f64,
 }
 
 impl Mover<'_> {
@@ -345,7 +365,11 @@ impl Mover<'_> {
             let (back_x, back_y) = back(part, state, block, place, (vx, vy));
             (wish_x, wish_y) = (stands.select(back_x, wish_x), stands.select(back_y, wish_y));
         }
-        let (vx, vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
+        let v = (vx, vy);
+        let (mut vx, mut vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
+        if self.program.forces.speeds.is_some() {
+            (vx, vy) = speed::with_noise(part, state, block, (v, (vx, vy)), self.forgets);
+        }
         if !self.program.noise.present {
             return (vx, vy);
         }
@@ -468,6 +492,9 @@ fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut 
     find_forces(simd, program, state, scratch);
     let occupied = state.layout.slots_of(state.occupied);
     keep_forces(simd, state, scratch, occupied);
+    if program.forces.speeds.is_some() {
+        speed::set(simd, program, state, scratch, occupied);
+    }
     let mut diverged = Mask::NONE;
     for block in 0..state.motion.x.len() {
         // Someone who has just entered has not made this step.

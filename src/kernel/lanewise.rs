@@ -8,7 +8,7 @@
 use super::contact::Contacts;
 use super::force::pair::{Block, Pair, PairTerm, Sum};
 use super::force::walls::{self, AtWalls};
-use super::force::{Forces, with_pair_terms};
+use super::force::{Forces, Room, with_pair_terms};
 use super::plane::{Open, Plane};
 use super::state::State;
 use super::vector::{Doubles, Part, larger, parts};
@@ -140,6 +140,37 @@ impl Lanewise {
             || self.walls(simd, forces, state, sums, contacts),
         );
         forces.add_cohesion(state, sums);
+    }
+
+    /// The slowness that the room ahead imposes, at the places that `forces` saw, into `sums`.
+    #[inline(always)]
+    pub(super) fn rooms<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State, sums: &mut Vec<Sum>) {
+        sums.clear();
+        sums.resize(state.agents, Sum::default());
+        self.kept.resize(state.agents * Room::COUNT, Lanes::ZERO);
+        for (index, kept) in self.kept.chunks_exact_mut(Room::COUNT).enumerate() {
+            for part in parts(simd) {
+                Room.keep(
+                    part,
+                    state,
+                    Block { part, index },
+                    #[inline(always)]
+                    |k, numbers| part.store(numbers, &mut kept[k]),
+                );
+            }
+        }
+        // Who may touch whom is known already.
+        let mut contacts = Contacts::default();
+        match forces.closed {
+            None => simd.vectorize(
+                #[inline(always)]
+                || self.pairs(simd, (Room, Open), forces, sums, &mut contacts),
+            ),
+            Some(plane) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs(simd, (Room, plane), forces, sums, &mut contacts),
+            ),
+        }
     }
 
     /// Makes the list anew where somebody has gone too far.
@@ -406,14 +437,8 @@ impl Lanewise {
             }
             for part in parts(simd) {
                 let place = (part.load(&agent.x), part.load(&agent.y));
-                let at = AtWalls::new(
-                    part,
-                    place,
-                    part.load(&agent.r),
-                    forces.shared,
-                    state,
-                    Block { part, index: i },
-                );
+                let at =
+                    AtWalls::new(part, place, part.load(&agent.r), forces, state, Block { part, index: i });
                 let touching = |k, lanes| contacts.push_wall(i as u32, k, part.bits(lanes));
                 let (fx, fy) = surfaces.push(part, near, &at, forces.margin, &mut self.faces, touching);
                 part.store(part.load(&sums[i].x) + fx, &mut sums[i].x);

@@ -27,6 +27,7 @@ pub mod process;
 pub mod program;
 mod rest;
 pub mod run;
+mod speed;
 pub mod start;
 pub mod state;
 mod vector;

@@ -101,6 +101,8 @@ impl Description {
     const BODY: Self = Self { range: Range::Positive, kinds: &Kind::ALL, ..Self::FIXED };
     /// Of the social force.
     const FORCE: Self = Self { preset: true, ..Self::USUAL };
+    /// Of the collision-free speed model.
+    const SPEEDS: Self = Self { preset: true, kinds: &[Kind::Cfs], ..Self::USUAL };
     /// Of a plan.
     const PLAN: Self = Self { kinds: &[Kind::Planned], range: Range::Positive, ..Self::FIXED };
 }
@@ -168,7 +170,7 @@ parameters! {
     K1 "k1" "body compression, in contact only" = FIXED { dimension: Dimension::STIFFNESS }
     K2 "k2" "sliding friction, in contact only" = FIXED { dimension: Dimension::FRICTION }
     Noise "noise" "standard deviation that each velocity component reaches in equilibrium, whatever the step" =
-        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, default: Some(0.0) }
+        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, default: Some(0.0), kinds: &Kind::NOISY }
     Attention "attention" "share of the social force, of agents and of walls, that the agent feels. Contact forces are not reduced" =
         USUAL { range: Range::Share, default: Some(1.0), shown: Shown::UnlessDefault }
     LimitSpeed "limit speed" "largest speed of a plan" = PLAN { dimension: Dimension::SPEED, limit: TOP_SPEED }
@@ -185,6 +187,16 @@ parameters! {
         PLAN { dimension: Dimension::LENGTH, default: Some(1.0) }
     Height "height" "stature of a walker that steps" =
         BODY { dimension: Dimension::LENGTH, limit: TALLEST, kinds: &[Kind::Stepped] }
+    TimeGap "time_gap" "collision-free speed model: time in which an agent at its speed reaches the one ahead, at least" =
+        SPEEDS { dimension: Dimension::TIME, range: Range::Positive, default: Some(1.0) }
+    Swerve "swerve" "collision-free speed model: how strongly another one turns the direction where both touch" =
+        SPEEDS { default: Some(8.0) }
+    SwerveRange "swerve_range" "collision-free speed model: range of that" =
+        SPEEDS { dimension: Dimension::LENGTH, range: Range::Positive, default: Some(0.1), role: Role::Reach }
+    WallSwerve "wall_swerve" "collision-free speed model: how strongly a wall that is touched turns the direction" =
+        SPEEDS { default: Some(5.0) }
+    WallRange "wall_range" "collision-free speed model: range of that" =
+        SPEEDS { dimension: Dimension::LENGTH, range: Range::Positive, default: Some(0.02), role: Role::Reach }
 }
 
 impl Parameter {

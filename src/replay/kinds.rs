@@ -2,6 +2,7 @@
 
 use super::situation::Replay;
 use crate::compile::presets::PRESETS;
+use crate::model::Kind;
 use crate::syntax::ast::{Field, Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -14,6 +15,9 @@ pub const CONSTANT: &str = "constant";
 /// The kind of a plain Langevin walker: no forces, and a noise of 0.2 m/s around the recorded velocity, which we chose.
 pub const LANGEVIN: &str = "langevin";
 const LANGEVIN_NOISE: f64 = 0.2;
+
+/// The preset of a kind that names none.
+const USUAL: &str = "helbing2000";
 
 /// Fields of agents that would change the velocity.
 const CHANGING: [&str; 3] = ["heading", "speed", "route"];
@@ -48,11 +52,14 @@ fn with_kind(
         (false, _) if is_free(name) => {
             let noise = if name == LANGEVIN { LANGEVIN_NOISE } else { 0.0 };
             let (preset, own) = body_of_user(file);
+            // Only a kind of forces has forces to be without; of another one the radius alone is taken over.
+            let is_forced = PRESETS.iter().any(|known| known.name == preset && known.model == Kind::Sfm);
+            let preset = if is_forced { preset } else { USUAL };
             radius = own.cloned();
             let free: String = FREE.iter().map(|(name, value)| format!("{name} = {value}; ")).collect();
             Some(format!("kind {name}: sfm preset {preset} {{ {free}noise = {noise} m/s }}\n"))
         }
-        (false, Some(preset)) => Some(format!("kind {name}: sfm preset {preset} {{ }}\n")),
+        (false, Some(preset)) => Some(format!("kind {name}: preset {preset} {{ }}\n")),
         (false, None) => {
             let presets = PRESETS.iter().map(|preset| preset.name);
             let known: Vec<&str> = declared.into_iter().chain(presets).chain([CONSTANT, LANGEVIN]).collect();
@@ -99,9 +106,9 @@ fn body_of_user(file: &ScenarioFile) -> (&str, Option<&Field>) {
         if let Some(preset) = &kind.preset {
             return (&preset.name, radius);
         }
-        next = Some(&kind.base.name);
+        next = kind.base.as_ref().map(|base| base.name.as_str());
     }
-    ("helbing2000", radius)
+    (USUAL, radius)
 }
 
 /// Whether people of a kind feel nobody.

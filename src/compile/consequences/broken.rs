@@ -231,7 +231,7 @@ impl<'i> Broken<'i> {
 
 fn kind_of(item: &Item) -> Option<(&str, (&str, Span))> {
     match item {
-        Item::Kind(decl) => Some((&decl.name.name, (&decl.base.name, decl.name.span))),
+        Item::Kind(decl) => Some((&decl.name.name, (&decl.base.as_ref()?.name, decl.name.span))),
         _ => None,
     }
 }

@@ -62,7 +62,7 @@ impl Kind {
     pub(crate) fn law(&self, parameter: Parameter) -> Option<Law> {
         let default = || parameter.description().default.map(Law::Constant);
         let of_kind = || match self.base {
-            model::Kind::Sfm => None,
+            model::Kind::Sfm | model::Kind::Cfs => None,
             model::Kind::Planned => {
                 default_law(parameter, self.laws[Parameter::LimitSpeed as usize].as_ref())
             }

@@ -38,6 +38,8 @@ pub(crate) struct Names<'a> {
     pub(crate) journal: Vec<(Vain, (ScopeId, String))>,
     /// Where names are used, and what they stand for there.
     pub(crate) uses: BTreeMap<Span, Meant>,
+    /// The parameters that choose a preset.
+    pub(crate) chosen_by: Vec<String>,
     /// Where the name of a bare number stands, and where that is declared.
     pub(crate) bare: BTreeMap<Span, Span>,
 }

@@ -12,18 +12,24 @@ use std::sync::Arc;
 /// Which table of names: the scenario's is 0, property file k has k + 1.
 pub(crate) type ScopeId = usize;
 
+/// A parameter of the call.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Param<'a> {
+    /// Its default.
+    pub(crate) value: &'a Expr,
+    /// Its legal range.
+    pub(crate) range: Option<&'a (Expr, Expr)>,
+    /// The names from which it chooses, if it is no number: its value is the place of one of them.
+    pub(crate) choices: &'a [Ident],
+}
+
 /// The meaning of a name.
 #[derive(Clone, Debug)]
 pub(crate) enum Meaning<'a> {
     /// A constant, evaluated when it is first used.
     Constant(&'a Expr),
     /// A parameter of the call.
-    Param {
-        /// Its default.
-        value: &'a Expr,
-        /// Its legal range.
-        range: Option<&'a (Expr, Expr)>,
-    },
+    Param(Param<'a>),
     /// A named expression or function.
     Let(&'a LetDecl),
     /// A property.
@@ -80,7 +86,7 @@ impl Meaning<'_> {
     pub(crate) fn body(&self) -> Option<Span> {
         match self {
             Self::Constant(value)
-            | Self::Param { value, .. }
+            | Self::Param(Param { value, .. })
             | Self::Property(value)
             | Self::Point(value) => Some(value.span),
             Self::Let(decl) => Some(decl.body.span),
@@ -93,7 +99,7 @@ impl Meaning<'_> {
     pub(crate) fn noun(&self) -> &'static str {
         match self {
             Self::Constant(_) => "a constant",
-            Self::Param { .. } => "a parameter",
+            Self::Param(_) => "a parameter",
             Self::Let(decl) if decl.arguments.is_empty() => "a named expression",
             Self::Let(_) => "a function",
             Self::Property(_) => "a property",

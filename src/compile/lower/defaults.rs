@@ -9,7 +9,7 @@ use crate::syntax::diagnostic::Diagnostic;
 /// that is the slip, and not all that fits the range.
 pub(crate) fn doubt_defaults(context: &mut Context<'_>, file: &ScenarioFile) {
     for item in &file.items {
-        let Item::Param { name, value, range: Some(range) } = item else { continue };
+        let Item::Param { name, value, range: Some(range), .. } = item else { continue };
         let is_own = context.names.scopes[0].get(&name.name).is_some_and(|entry| entry.span == name.span);
         if is_own && let Some(error) = fault_of_default(context, name, value, range) {
             context.note(error);

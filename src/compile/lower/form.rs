@@ -1,6 +1,7 @@
 //! The dimension of an expression in which something is wrong, as far as its form tells it: what it is compared with is
 //! judged by that. `distance(usr, door) < 2 kg` has two errors.
 
+use crate::compile::context::symbols::Param;
 use crate::compile::context::{Context, Locals, symbols::Meaning, typed::Typed};
 use crate::compile::dimension::{self, Dimension};
 use crate::compile::lower::modes;
@@ -88,7 +89,7 @@ impl Gist<'_, '_> {
             return None;
         }
         match self.context.look_up(name, locals.scope) {
-            Some((scope, Meaning::Constant(value) | Meaning::Param { value, .. })) => {
+            Some((scope, Meaning::Constant(value) | Meaning::Param(Param { value, .. }))) => {
                 self.of(value, &Locals::of(scope))
             }
             Some((scope, Meaning::Let(decl))) if decl.arguments.is_empty() => {

@@ -4,6 +4,7 @@ pub(crate) mod arithmetic;
 pub(crate) mod builtin;
 pub(crate) mod call;
 pub(crate) mod call_arguments;
+pub(crate) mod choices;
 pub(crate) mod convert;
 pub(crate) mod defaults;
 pub(crate) mod depth;

@@ -1,5 +1,6 @@
 //! Names and members of sets.
 
+use crate::compile::context::symbols::Param;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     dependence::Meant,
@@ -68,7 +69,7 @@ pub(crate) fn lower_name(
             },
         };
     };
-    if let Meaning::Constant(value) | Meaning::Param { value, .. } = &meaning
+    if let Meaning::Constant(value) | Meaning::Param(Param { value, .. }) = &meaning
         && matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_none())
         // A declaration that is looked at by its name is no use of it.
         && value.span != span
@@ -78,7 +79,7 @@ pub(crate) fn lower_name(
     // A declaration that is looked at by its name is no use of it.
     if meaning.body() != Some(span) {
         let meant = meaning.body().map_or(Meant::Other, Meant::Written);
-        let is_param = matches!(meaning, Meaning::Param { .. });
+        let is_param = matches!(meaning, Meaning::Param(_));
         context.names.uses.insert(span, if is_param { Meant::Parameter } else { meant });
     }
     match meaning {
@@ -86,7 +87,13 @@ pub(crate) fn lower_name(
             let lowered = timeless(this, value, &Locals::of(scope));
             this.unchanging(lowered, value)
         }),
-        Meaning::Param { value, .. } => {
+        Meaning::Param(Param { choices, .. }) if !choices.is_empty() => {
+            let said = format!("`{name}` is a choice, not a number");
+            context.report(
+                error!(E0213, span, "{said}"; hint: "a choice is used by kinds: `kind adult: preset {name}`"),
+            )
+        }
+        Meaning::Param(Param { value, .. }) => {
             if let Some(set) = context.names.settings.get(name) {
                 return Ok(Typed::Number(*set));
             }

@@ -1,13 +1,15 @@
 //! Kinds of agents: parameters inherited, preset, overridden.
 
+use crate::compile::context::dependence::Meant;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     kind::{FIELDS, Kind, Planning},
     symbols::{Meaning, unknown},
 };
+use crate::compile::lower::choices;
 use crate::compile::lower::laws;
 use crate::compile::people::{planners, refused, stepping};
-use crate::compile::presets::{PRESETS, law};
+use crate::compile::presets::{PRESETS, Preset, law};
 use crate::compile::scene::periodic;
 use crate::model::{self, Body, Law, Parameter, Planner, Stepper};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
@@ -24,7 +26,7 @@ const WAYS: [&str; 2] = ["shortest", "straight"];
 /// The fields of a kind that are no parameters.
 fn fields_of(kind: model::Kind) -> &'static [&'static str] {
     match kind {
-        model::Kind::Sfm => &[WAYFINDING],
+        model::Kind::Sfm | model::Kind::Cfs => &[WAYFINDING],
         model::Kind::Planned => &FIELDS,
         model::Kind::Stepped => &["gait", "search"],
     }
@@ -92,27 +94,37 @@ pub(crate) fn kind(context: &mut Context<'_>, name: &Ident) -> Lowered<Kind> {
 
 /// The parameters of a kind as it is declared.
 pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Kind> {
-    let mut kind = kind(context, &decl.base);
-    if let Some(preset) = &decl.preset {
-        if PRESETS.iter().any(|p| p.name == preset.name) {
-            if let Ok(kind) = &mut kind {
+    let preset = decl.preset.as_ref().map(|written| preset(context, written, &decl.body));
+    let mut kind = match (&decl.base, &preset) {
+        (Some(base), _) => kind(context, base),
+        (None, Some(Ok(preset))) => Ok(Kind { base: preset.model, ..Kind::default() }),
+        (None, _) => Err(Reported),
+    };
+    let mut is_wrong = false;
+    match (preset, &mut kind) {
+        (Some(Ok(preset)), Ok(kind)) => {
+            let is_forced = |model| model::Kind::FORCED.contains(&model);
+            if preset.model == kind.base || is_forced(preset.model) && is_forced(kind.base) {
                 for parameter in Parameter::of_kind(kind.base) {
-                    if let Some(law) = law(&preset.name, parameter) {
+                    if let Some(law) = law(preset.name, parameter) {
                         kind.laws[parameter as usize] = Some(law);
                     }
                 }
+            } else {
+                let (written, name) = (decl.preset.as_ref().unwrap_or(&decl.name), &decl.name.name);
+                let (own, of) = (preset.model.name(), kind.base.name());
+                context.note(
+                    error!(E0208, written.span, "`{}` is a preset of `{own}`, not of `{of}`", preset.name;
+                    hint: "leave the model out: `kind {name}: preset {}`", written.name),
+                );
+                is_wrong = true;
             }
-        } else {
-            let error =
-                unknown("preset", &preset.name, preset.span, Code::E0208, PRESETS.iter().map(|p| p.name));
-            let known = format!("the presets are {}", PRESETS.map(|p| p.name).join(", "));
-            let error = match error.hint.clone() {
-                Some(near) => error.hint(format!("{near} {known}")),
-                None => error.hint(known),
-            };
-            context.note(error);
-            kind = Err(Reported);
         }
+        (Some(Err(Reported)), _) => is_wrong = true,
+        _ => {}
+    }
+    if is_wrong {
+        kind = Err(Reported);
     }
     let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
     let rest = parameters(context, &decl.body, kind.as_mut().ok(), &Locals::default());
@@ -183,12 +195,12 @@ pub(crate) fn parameters<'f>(
 
 /// The body of a kind: every parameter must be known now.
 pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowered<Body> {
-    if kind.base != model::Kind::Sfm {
+    if matches!(kind.base, model::Kind::Planned | model::Kind::Stepped) {
         periodic::refuse_if_periodic(
             context,
             name.span,
             "walkers that plan or step",
-            "use a kind that starts from `sfm`",
+            "use a kind that starts from `sfm` or `cfs`",
         )?;
     }
     let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());
@@ -214,7 +226,7 @@ pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowe
         kind.law(parameter).unwrap_or(Law::Constant(neutral.unwrap_or_default()))
     });
     let is_planned = kind.base == model::Kind::Planned;
-    body.finds_ways = !kind.straight && kind.base == model::Kind::Sfm;
+    body.finds_ways = !kind.straight && matches!(kind.base, model::Kind::Sfm | model::Kind::Cfs);
     body.stepper = (kind.base == model::Kind::Stepped).then(|| {
         let sets_speed = kind.laws[Parameter::Speed as usize].is_some();
         Arc::new(Stepper { gait: kind.gait.clone(), search: kind.search, sets_speed })
@@ -252,4 +264,55 @@ fn goes_straight(context: &mut Context<'_>, value: &Value) -> Lowered<bool> {
                 hint: "write `wayfinding = straight` for agents that go straight for their goals whatever is in the way"));
     }
     Ok(known == Some(1))
+}
+
+/// The preset of a name, which may be that of a parameter that chooses one: then each of its list must have the fields of the
+/// kind.
+fn preset(context: &mut Context<'_>, written: &Ident, body: &[Field]) -> Lowered<&'static Preset> {
+    let Some((chosen, choices)) = choices::chosen(context, written) else {
+        return known(context, written);
+    };
+    context.names.uses.insert(written.span, Meant::Parameter);
+    context.names.chosen_by.push(written.name.clone());
+    let mut all = Vec::new();
+    for choice in choices {
+        all.push(known(context, choice));
+    }
+    for preset in all.iter().flatten() {
+        let lacks = |field: &&Field| {
+            let name = field.name.name.as_str();
+            let is_of = |model| {
+                fields_of(model).contains(&name) || Parameter::of_kind(model).any(|own| own.name() == name)
+            };
+            !is_of(preset.model) && model::Kind::ALL.into_iter().any(is_of)
+        };
+        if let Some(field) = body.iter().find(lacks) {
+            let (name, model) = (&field.name.name, preset.model.name());
+            let error =
+                error!(E0207, field.name.span, "`{}`, a preset of `{model}`, has no `{name}`", preset.name);
+            return context.report(
+                error.formal().hint(format!(
+                    "remove `{name}`, or `{}` from the list of `{}`",
+                    preset.name, written.name
+                )),
+            );
+        }
+    }
+    let at = choices.iter().position(|choice| std::ptr::eq(choice, chosen)).unwrap_or(0);
+    all.swap_remove(at)
+}
+
+/// The preset of this name.
+fn known(context: &mut Context<'_>, written: &Ident) -> Lowered<&'static Preset> {
+    if let Some(preset) = PRESETS.iter().find(|preset| preset.name == written.name) {
+        return Ok(preset);
+    }
+    let names = || PRESETS.iter().map(|preset| preset.name);
+    let error = unknown("preset", &written.name, written.span, Code::E0208, names());
+    let known = format!("the presets are {}", names().collect::<Vec<_>>().join(", "));
+    let error = match error.hint.clone() {
+        Some(near) => error.hint(format!("{near} {known}")),
+        None => error.hint(known),
+    };
+    context.report(error)
 }

@@ -79,7 +79,7 @@ impl Compiler<'_> {
             .filter_map(|name| {
                 let number = point.get(*name)?;
                 let shown = match context.names.scopes[0].get(name).map(|e| e.meaning.clone()) {
-                    Some(Meaning::Param { value, .. }) => settings::shown(context, value, *number),
+                    Some(Meaning::Param(param)) => settings::shown(context, param, *number),
                     _ => number.value.to_string(),
                 };
                 Some(((*name).to_owned(), shown))

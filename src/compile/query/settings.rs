@@ -5,9 +5,10 @@ use crate::base::math;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     number::Number,
-    symbols::{Meaning, unknown},
+    symbols::{Meaning, Param, unknown},
 };
 use crate::compile::dimension::{self, Dimension, Unit};
+use crate::compile::lower::choices;
 use crate::syntax::ast::{Expr, ExprKind, UnitExpr, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
@@ -35,24 +36,20 @@ fn unit_of_default(default: &Expr) -> Option<&UnitExpr> {
     }
 }
 
-/// The parameter of a name: its default and range.
-pub(crate) fn param<'a>(
-    context: &mut Context<'a>,
-    name: &str,
-    span: Span,
-) -> Lowered<(&'a Expr, Option<&'a (Expr, Expr)>)> {
+/// The parameter of a name.
+pub(crate) fn param<'a>(context: &mut Context<'a>, name: &str, span: Span) -> Lowered<Param<'a>> {
     if context.names.is_doubtful(0, name) {
         return Err(Reported);
     }
     match context.names.scopes[0].get(name).map(|e| e.meaning.clone()) {
-        Some(Meaning::Param { value, range }) => Ok((value, range)),
+        Some(Meaning::Param(param)) => Ok(param),
         Some(meaning) => context
             .report(error!(E0210, span, "`{name}` is {} and cannot be set", meaning.noun();
                     hint: "declare it with `param`")),
         None => {
             let params: Vec<String> = context.names.scopes[0]
                 .entries()
-                .filter(|(_, e)| matches!(e.meaning, Meaning::Param { .. }))
+                .filter(|(_, e)| matches!(e.meaning, Meaning::Param(_)))
                 .map(|(n, _)| n.to_owned())
                 .collect();
             let mut error = unknown("parameter", name, span, Code::E0210, params.iter().map(String::as_str));
@@ -74,8 +71,14 @@ pub(crate) fn setting(
     value: &Expr,
     locals: &Locals,
 ) -> Lowered<Number> {
-    let declared = param(context, name, value.span)
-        .and_then(|(default, range)| Ok((default, range, context.number(default, &Locals::of(0))?)));
+    let declared = param(context, name, value.span);
+    if let Ok(Param { choices, .. }) = declared
+        && !choices.is_empty()
+    {
+        return choices::place(context, name, value, choices);
+    }
+    let declared = declared
+        .and_then(|Param { value, range, .. }| Ok((value, range, context.number(value, &Locals::of(0))?)));
     let number = context.number(value, locals);
     let ((default, range, declared), mut number) = (declared?, number?);
     let bare = !matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_some());
@@ -108,7 +111,9 @@ pub(crate) fn in_range(
     (name, number): (&str, Number),
     at: (Span, Span),
 ) -> Lowered<()> {
-    let Ok((default, Some((low, high)))) = param(context, name, at.0) else { return Ok(()) };
+    let Ok(param @ Param { range: Some((low, high)), .. }) = param(context, name, at.0) else {
+        return Ok(());
+    };
     let place = low.span.to(high.span);
     let locals = Locals::of(0);
     let ends = (
@@ -122,7 +127,7 @@ pub(crate) fn in_range(
     }
     if number.value < low.value || number.value > high.value {
         let at = if number.value < low.value { at.0 } else { at.1 };
-        let [low, high] = [low, high].map(|n| shown(context, default, n));
+        let [low, high] = [low, high].map(|n| shown(context, param, n));
         let said = format!("`{name}` must be between {low} and {high}");
         return context.report(error!(E0405, at, "{said}").hanging_on(place));
     }
@@ -137,12 +142,15 @@ pub(crate) fn values(
     most: usize,
     locals: &Locals,
 ) -> Lowered<Vec<Number>> {
-    let Ok((default, _)) = param(context, name, at) else {
+    let Ok(Param { value: default, choices, .. }) = param(context, name, at) else {
         // Their values are unknown; their errors are reported.
         return context.lower_all(values.parts(), locals).and(Err(Reported));
     };
     let (from, to, by, log) = match values {
         Values::List(list) => return listed(context, (name, at), list, most, locals),
+        Values::Range { from, .. } if !choices.is_empty() => {
+            return context.report(error!(E0213, from.span, "a choice has no range"; hint: "list its names"));
+        }
         Values::Range { from, to, by, log } => (from, to, by, *log),
     };
     let step = context.number(by, locals);
@@ -249,8 +257,13 @@ fn too_many<T>(context: &mut Context<'_>, at: Span, most: usize) -> Lowered<T> {
     context.report(error!(E0405, at, "at most {most} values are allowed"))
 }
 
-/// A value in the unit in which the default is written.
-pub(crate) fn shown(context: &Context<'_>, default: &Expr, number: Number) -> String {
+/// The value of a parameter: of a choice its name, else in the unit in which the default is written.
+pub(crate) fn shown(context: &Context<'_>, param: Param<'_>, number: Number) -> String {
+    let Param { value: default, choices, .. } = param;
+    let place = number.as_whole().and_then(|at| usize::try_from(at).ok());
+    if let Some(choice) = place.and_then(|at| choices.get(at)) {
+        return choice.name.clone();
+    }
     let unit = unit_of_default(default);
     let resolved = unit.and_then(|unit| dimension::resolve(unit).ok());
     match (unit, resolved) {

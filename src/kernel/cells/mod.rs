@@ -15,8 +15,9 @@ mod walls;
 
 use super::contact::Contacts;
 use super::force::pair::{PairTerm, Sum};
-use super::force::{Forces, walls as faces, with_pair_terms};
+use super::force::{Forces, Room, walls as faces, with_pair_terms};
 use super::near::{Close, Grid, Index};
+use super::plane::Open;
 use super::state::State;
 use super::vector::parts;
 use crate::base::geometry::{Bounds, Vec2};
@@ -54,6 +55,8 @@ pub(super) struct Cells {
     screens: Vec<u32>,
     /// As in `Close`.
     edge: f64,
+    /// How far agents feel each other at the places that were last seen.
+    reach: Option<Reach>,
 }
 
 impl Cells {
@@ -112,8 +115,34 @@ impl Cells {
             || self.walls(simd, &reach, forces, state, contacts),
         );
         self.scatter(sums);
+        self.reach = Some(reach);
         contacts.arrange();
         forces.add_cohesion(state, sums);
+    }
+
+    /// The slowness that the room ahead imposes, at the places that `forces` saw, into `sums`.
+    #[inline(always)]
+    pub(super) fn rooms<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State, sums: &mut Vec<Sum>) {
+        sums.clear();
+        sums.resize(state.motion.x.len(), Sum::default());
+        let Some(reach) = self.reach.filter(|_| state.occupied.has(0)) else { return };
+        // Who may touch whom is known already.
+        let mut contacts = Contacts::default();
+        simd.vectorize(
+            #[inline(always)]
+            || self.keep(simd, Room, state),
+        );
+        match forces.closed {
+            None => simd.vectorize(
+                #[inline(always)]
+                || self.pairs(simd, &reach, (Room, Open), forces, &mut contacts),
+            ),
+            Some(plane) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs(simd, &reach, (Room, plane), forces, &mut contacts),
+            ),
+        }
+        self.scatter(sums);
     }
 
     /// Lists the faces that can stand between any two agents.

@@ -64,14 +64,7 @@ impl Cells {
             return;
         }
         let agents = Sorted { part, agents: &self.index.agent[eight.clone()] };
-        let at = AtWalls::new(
-            part,
-            (x, y),
-            part.slice(&self.index.r[eight.clone()]),
-            forces.shared,
-            state,
-            agents,
-        );
+        let at = AtWalls::new(part, (x, y), part.slice(&self.index.r[eight.clone()]), forces, state, agents);
         let touching = |face, lanes| {
             for lane in part.bits(lanes).iter() {
                 contacts.push_wall(self.index.agent[k + lane], face, Mask::lane(0));

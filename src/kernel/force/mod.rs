@@ -10,6 +10,7 @@ mod ahead;
 pub(super) mod contact;
 pub(super) mod pair;
 mod social;
+mod speed;
 pub(super) mod walls;
 
 use super::pace::fastest;
@@ -17,12 +18,13 @@ use super::plane::Closed;
 use super::state::State;
 use crate::base::geometry::Vec2;
 use crate::base::math::at_least;
-use crate::model::{Agent, Body, Law, Parameter, Periods, Scenario};
+use crate::model::{Agent, Body, Group, Kind, Law, Parameter, Periods, Scenario};
 pub(super) use ahead::Ahead;
 pub(super) use pair::Both;
 use pair::Sum;
 use social::Particles;
 pub(super) use social::{Bounded, Social};
+pub(super) use speed::{Room, Swerve};
 use walls::Surfaces;
 
 /// The largest approach that contact candidates foresee at least, m/s.
@@ -45,6 +47,8 @@ pub struct Forces {
     pub(super) second: bool,
     /// Whether any body looks ahead, and whether all have the same foresight.
     pub(super) ahead: Option<SameForesight>,
+    /// Whether any agent is of the collision-free speed model, and whether all are.
+    pub(super) speeds: Option<AllOfThem>,
     /// `particles.repulsion`, or as long a list of NaN.
     pub(super) repulsion: Vec<f64>,
     /// Bodies (and walls) nearer than this to touching may touch within a step, m.
@@ -54,11 +58,28 @@ pub struct Forces {
 /// Whether the foresight of all bodies is the same constant.
 type SameForesight = bool;
 
+/// Whether all agents are of the collision-free speed model.
+type AllOfThem = bool;
+
 /// Runs a block with the terms between two bodies that a scenario has, as `$term`, and its plane, as `$plane`. It is compiled
 /// once for each combination that is common, so that a term that such a scenario lacks costs nothing.
 macro_rules! with_pair_terms {
     ($forces:ident, $term:ident, $plane:pat, $body:expr) => {
-        if let (Some(true), Some((b, _)), false) = ($forces.ahead, $forces.shared, $forces.second) {
+        if let Some(all) = $forces.speeds {
+            if all {
+                let $term = $crate::kernel::force::Swerve;
+                with_pair_terms!(@on $forces, $plane, $body)
+            } else {
+                let first = $crate::kernel::force::Social::<false, false>::with_own_ranges();
+                let second = $crate::kernel::force::Social::<true, false>::with_own_ranges();
+                let term = $crate::kernel::force::Both(first, second);
+                let repulsion = $forces.repulsion.as_slice();
+                let term = $crate::kernel::force::Bounded { term, repulsion };
+                let term = $crate::kernel::force::Both(term, $crate::kernel::force::Swerve);
+                let $term = $crate::kernel::force::Ahead::<_, false>(term);
+                with_pair_terms!(@on $forces, $plane, $body)
+            }
+        } else if let (Some(true), Some((b, _)), false) = ($forces.ahead, $forces.shared, $forces.second) {
             let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
             let $term = $crate::kernel::force::Ahead::<_, true>($term);
             with_pair_terms!(@on $forces, $plane, $body)
@@ -139,7 +160,11 @@ impl Forces {
         let ahead = (looks(Parameter::Foresight) || looks(Parameter::Headway)).then_some(same);
         let mut repulsion = particles.repulsion.clone();
         repulsion.resize(scenario.agents.len(), f64::NAN);
-        let shared = first_range.zip(second_range).filter(|_| particles.repulsion.is_empty());
+        let of_speeds = |agent: &Agent| agent.body.kind == Kind::Cfs;
+        let all = scenario.agents.iter().all(of_speeds);
+        let speeds = scenario.agents.iter().any(of_speeds).then_some(all);
+        let is_shared = particles.repulsion.is_empty() && speeds.is_none();
+        let shared = first_range.zip(second_range).filter(|_| is_shared);
         Self {
             surfaces: Surfaces::new(&scenario.scene.unrolled()),
             periods: scenario.scene.periods,
@@ -149,6 +174,7 @@ impl Forces {
             shared,
             second,
             ahead,
+            speeds,
             repulsion,
             margin: at_least(APPROACH, 2.0 * fastest(scenario)) * dt,
         }
@@ -166,6 +192,9 @@ impl Forces {
 // the n members present, on those farther than (n - 1)/2 m from it. Without lanes: groups are few, and this is the same
 // for both layouts.
 
+/// The force that drives 80 kg at 1 m/s with a relaxation time of 0.5 s, N.
+const DRIVING: f64 = 160.0;
+
 /// Members that attract each other.
 #[derive(Clone, Debug)]
 struct Cohesion {
@@ -178,11 +207,16 @@ impl Cohesion {
     /// The groups of a scenario with an attraction.
     fn all(scenario: &Scenario) -> Vec<Self> {
         let groups = scenario.groups.iter();
+        // The attraction of a group turns an agent of the collision-free speed model: this many newton as much as its goal.
+        let scale = |group: &Group| {
+            let first = &scenario.agents[group.members[0].0 as usize];
+            if first.body.kind == Kind::Cfs { 1.0 / DRIVING } else { 1.0 }
+        };
         groups
             .filter(|group| group.attraction != 0.0 && group.members.len() > 1)
             .map(|group| Self {
                 members: group.members.iter().map(|member| member.0).collect(),
-                attraction: group.attraction,
+                attraction: group.attraction * scale(group),
             })
             .collect()
     }

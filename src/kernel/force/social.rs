@@ -25,16 +25,16 @@ pub(super) const REACH: f64 = 16.0;
 /// Largest exponent of two of a social force: what goes beyond has diverged anyway, and stays finite.
 const LARGEST_POWER: f64 = 480.0;
 
-/// Whether `decay` of some lane is above zero.
-#[inline(always)]
-pub(super) fn is_in_reach<S: Simd>(part: Part<S>, power: Doubles<S>) -> bool {
-    power.simd_gt(part.c(-REACH * LOG2_E)).any_true()
-}
-
 /// 2^power, zero beyond the reach (and where an agent is absent: there the gap is minus infinity).
 #[inline(always)]
 pub(super) fn decay<S: Simd>(part: Part<S>, power: Doubles<S>) -> Doubles<S> {
-    let in_reach = power.simd_gt(part.c(-REACH * LOG2_E));
+    decay_to(part, power, part.c(-REACH * LOG2_E))
+}
+
+/// 2^power, zero where that is no more than the `least`.
+#[inline(always)]
+pub(super) fn decay_to<S: Simd>(part: Part<S>, power: Doubles<S>, least: Doubles<S>) -> Doubles<S> {
+    let in_reach = power.simd_gt(least);
     // What `min` makes of NaN does not matter: it is not in reach.
     in_reach.select(exp2(part, power.min(part.c(LARGEST_POWER))), part.c(0.0))
 }

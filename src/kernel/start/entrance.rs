@@ -118,6 +118,7 @@ fn arrive(program: &Program, state: &mut State, source: usize, lane: usize, now:
         enter(program, state, (member.0 as usize, lane), (Occasion::Enters, None), &body, at);
         let slot = state.slot(member.0 as usize, lane);
         state.prepare(slot, program.dt);
+        state.forget_noise(slot);
         came = true;
     }
     came

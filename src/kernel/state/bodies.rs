@@ -3,6 +3,7 @@
 use crate::base::lanes::Lanes;
 use crate::base::math;
 use crate::kernel::layout::Slot;
+use crate::kernel::speed::FORGETS;
 use crate::model::Parameter;
 use crate::model::parameter::{Range, Role};
 use std::ops::{Index, IndexMut};
@@ -32,13 +33,22 @@ impl Bodies {
         }
     }
 
-    /// Works out what follows from the parameters of a slot for steps of `dt` seconds.
+    /// Works out what follows from the parameters of a slot for steps of `dt` seconds. Driving, noise and forces change no
+    /// velocity of an agent that moves by itself, or that is of the collision-free speed model.
     pub(super) fn prepare(&mut self, Slot { block, lane }: Slot, dt: f64, by_itself: bool) {
         let of = |parameter| self[parameter][block].0[lane];
         let decay = math::exp(-dt / of(Parameter::Tau));
         let kick = of(Parameter::Noise) * (1.0 - decay * decay).sqrt();
         let push = 0.5 * dt / of(Parameter::Mass);
-        let found = if by_itself { (1.0, 0.0, 0.0) } else { (decay, kick, push) };
+        let speed = of(Parameter::SwerveRange) > 0.0;
+        let found = match (by_itself, speed) {
+            (true, _) => (1.0, 0.0, 0.0),
+            (false, true) => {
+                let left = math::exp(-dt / FORGETS);
+                (1.0, of(Parameter::Noise) * (1.0 - left * left).sqrt(), 0.0)
+            }
+            (false, false) => (decay, kick, push),
+        };
         (self.decay[block].0[lane], self.kick[block].0[lane], self.push[block].0[lane]) = found;
     }
 
@@ -71,7 +81,9 @@ impl Bodies {
 
 /// A value with which an absent agent disturbs no vector: no force, no division by zero.
 fn harmless(parameter: Parameter) -> f64 {
-    let divides = parameter.description().range == Range::Positive && parameter != Parameter::Radius;
+    // A range of 0 says that an agent is of another model.
+    let is_safe = matches!(parameter, Parameter::Radius | Parameter::SwerveRange | Parameter::WallRange);
+    let divides = parameter.description().range == Range::Positive && !is_safe;
     if divides { 1.0 } else { 0.0 }
 }
 

@@ -110,6 +110,12 @@ impl State {
         self.bodies.prepare(slot, dt, self.plans.is_stepped(slot));
     }
 
+    /// The noise of an agent of the collision-free speed model begins anew: all of its velocity is that of the model.
+    pub(super) fn forget_noise(&mut self, Slot { block, lane }: Slot) {
+        self.driving.go_x[block].0[lane] = self.motion.vx[block].0[lane];
+        self.driving.go_y[block].0[lane] = self.motion.vy[block].0[lane];
+    }
+
     /// Where agent `agent` of the trial in lane `lane` is kept.
     #[inline(always)]
     pub fn slot(&self, agent: usize, lane: usize) -> Slot {
@@ -189,6 +195,14 @@ pub struct Driving {
     /// One over the largest driving speed that the headway to those ahead allows, s/m; 0 where nobody is. Kept from step to
     /// step with the forces.
     pub slowness: Vec<Lanes>,
+    /// Where an agent of the collision-free speed model goes, a unit vector.
+    pub course_x: Vec<Lanes>,
+    /// The same, second component.
+    pub course_y: Vec<Lanes>,
+    /// The velocity of such an agent without noise, m/s.
+    pub go_x: Vec<Lanes>,
+    /// The same, second component.
+    pub go_y: Vec<Lanes>,
     /// Where an agent that stands came or comes to rest, m; infinite in one that does not stand.
     pub rest_x: Vec<Lanes>,
     /// The second coordinate.
@@ -205,6 +219,10 @@ impl Driving {
             ey: zero(),
             speed: zero(),
             slowness: zero(),
+            course_x: vec![Lanes::splat(1.0); blocks],
+            course_y: zero(),
+            go_x: zero(),
+            go_y: zero(),
             rest_x: nowhere(),
             rest_y: nowhere(),
         }

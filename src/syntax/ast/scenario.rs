@@ -44,6 +44,8 @@ pub enum Item {
         value: Expr,
         /// Legal range, ends included.
         range: Option<(Expr, Expr)>,
+        /// The names from which it chooses; empty if it is a number. Its default is one of them.
+        choices: Vec<Ident>,
     },
     /// `let gap(a) = …`
     Let(LetDecl),
@@ -274,9 +276,9 @@ pub enum Leg {
 pub struct KindDecl {
     /// Its name.
     pub name: Ident,
-    /// `sfm`, or the kind it starts from.
-    pub base: Ident,
-    /// `preset name`
+    /// `sfm`, or the kind it starts from; `None` if its preset tells.
+    pub base: Option<Ident>,
+    /// `preset name`: of a preset, or of a parameter that chooses one.
     pub preset: Option<Ident>,
     /// Its fields.
     pub body: Vec<Field>,

@@ -10,7 +10,7 @@ impl Builder<'_> {
     pub(super) fn kind(&mut self, pair: Pair<'_>) -> Option<KindDecl> {
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
-        let base = self.ident(&parts.part(Rule::name)?);
+        let base = parts.part(Rule::name).map(|base| self.ident(&base));
         let preset = match parts.part(Rule::preset) {
             Some(preset) => Some(self.ident(&Parts::of(preset).part(Rule::name)?)),
             None => None,

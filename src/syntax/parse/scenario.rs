@@ -2,7 +2,9 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
-use crate::syntax::ast::{Item, MoveOption, MovesDecl, PathsDecl, Route, ScenarioFile, Value};
+use crate::syntax::ast::{
+    Expr, ExprKind, Item, MoveOption, MovesDecl, PathsDecl, Route, ScenarioFile, Value,
+};
 
 impl Builder<'_> {
     pub(super) fn scenario_file(&mut self) -> ScenarioFile {
@@ -34,10 +36,25 @@ impl Builder<'_> {
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::name)?);
                 if let Some(value) = parts.part(Rule::expr) {
-                    return Some(Item::Param { name, value: self.expr(value), range: None });
+                    return Some(Item::Param {
+                        name,
+                        value: self.expr(value),
+                        range: None,
+                        choices: Vec::new(),
+                    });
+                }
+                if let Some(choice) = parts.part(Rule::one_of) {
+                    let mut parts = Parts::of(choice);
+                    let default = self.ident(&parts.part(Rule::name)?);
+                    let mut choices = Vec::new();
+                    while let Some(choice) = parts.part(Rule::name) {
+                        choices.push(self.ident(&choice));
+                    }
+                    let value = Expr { kind: ExprKind::Name(default.name), span: default.span };
+                    return Some(Item::Param { name, value, range: None, choices });
                 }
                 let (value, low, high) = self.truncated(parts.part(Rule::truncated)?)?;
-                Some(Item::Param { name, value, range: Some((low, high)) })
+                Some(Item::Param { name, value, range: Some((low, high)), choices: Vec::new() })
             }
             Rule::let_decl => self.let_decl(pair).map(Item::Let),
             Rule::tracks => {

@@ -26,8 +26,9 @@ mod sharing;
 #[cfg(test)]
 mod tests;
 
+use super::Forces;
 use super::pair::AgentsInLanes;
-use super::social::{decay, is_in_reach};
+use super::social::{REACH, decay_to};
 use crate::base::geometry::Nearby;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::lanes::{Lanes, Mask};
@@ -41,6 +42,10 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use sharing::{Push, share};
 use std::f64::consts::LOG2_E;
+
+/// Powers of two below this are not felt: of a social force, and of a turn, which is felt as far as it changes a double.
+const LEAST: f64 = -REACH * LOG2_E;
+const LEAST_TURN: f64 = -52.0;
 
 /// A point this close to a barrier lies on it, m: nobody slips through, whatever is drawn so.
 const ON: f64 = 1e-3;
@@ -85,27 +90,41 @@ pub(in crate::kernel) struct AtWalls<S: Simd> {
     place: (Doubles<S>, Doubles<S>),
     /// Radius, m.
     r: Doubles<S>,
-    /// Strength A, N, and log2(e)/B, 1/m, of the social force.
+    /// Strength A, N, and log2(e)/B, 1/m, of the social force; the same numbers of the collision-free speed model.
     a: Doubles<S>,
     rate: Doubles<S>,
+    /// Powers of two below this are not felt.
+    least: Doubles<S>,
 }
 
 impl<S: Simd> AtWalls<S> {
-    /// Of agents at a place with a radius; with `shared` all have this B (and B of the second term).
+    /// Of agents at a place with a radius.
     #[inline(always)]
     pub(in crate::kernel) fn new(
         part: Part<S>,
         place: (Doubles<S>, Doubles<S>),
         r: Doubles<S>,
-        shared: Option<(f64, f64)>,
+        forces: &Forces,
         state: &State,
         agents: impl AgentsInLanes<S>,
     ) -> Self {
-        let rate = match shared {
+        let rate = match forces.shared {
             Some((b, _)) => part.c(LOG2_E / b),
             None => part.c(LOG2_E) / agents.field(&state.bodies[Parameter::B]),
         };
-        Self { place, r, a: agents.field(&state.bodies[Parameter::A]), rate }
+        let (a, least) = (agents.field(&state.bodies[Parameter::A]), part.c(LEAST));
+        if forces.speeds.is_none() {
+            return Self { place, r, a, rate, least };
+        }
+        let range = agents.field(&state.bodies[Parameter::WallRange]);
+        let turns = range.simd_gt(part.c(0.0));
+        Self {
+            place,
+            r,
+            a: turns.select(agents.field(&state.bodies[Parameter::WallSwerve]), a),
+            rate: turns.select(part.c(LOG2_E) / range, rate),
+            least: turns.select(part.c(LEAST_TURN), least),
+        }
     }
 }
 
@@ -233,7 +252,7 @@ impl Surfaces {
                 may_touch(k, touching);
             }
             let mut power = (bodies.r - nearest.distance) * bodies.rate;
-            if !is_in_reach(part, power) {
+            if !power.simd_gt(bodies.least).any_true() {
                 continue;
             }
             let Face { joints, structure, barrier, form, .. } = &self.faces[k as usize];
@@ -244,7 +263,7 @@ impl Surfaces {
                     push.shared = push.alone;
                 }
             }
-            let mut alone = bodies.a * decay(part, power);
+            let mut alone = bodies.a * decay_to(part, power, bodies.least);
             if !joints.is_empty() {
                 let left = self.left(k, part, bodies.place, &nearest);
                 power = left.simd_gt(part.c(0.0)).select(power, part.c(f64::NEG_INFINITY));
@@ -255,7 +274,7 @@ impl Surfaces {
                 fy += alone * nearest.ny;
                 continue;
             };
-            if is_in_reach(part, power) {
+            if power.simd_gt(bodies.least).any_true() {
                 let mut push = Push { structure, barrier: *barrier, ..Push::default() };
                 part.store(nearest.nx, &mut push.nx);
                 part.store(nearest.ny, &mut push.ny);

@@ -35,6 +35,7 @@ fn forces<S: Simd>(simd: S, all: &Surfaces, at: &[Vec2; 8], range: f64) -> [Lane
             place: (part.load(&x), part.load(&y)),
             r: part.c(0.3),
             a: part.c(1.0),
+            least: part.c(crate::kernel::force::walls::LEAST),
             rate: part.c(std::f64::consts::LOG2_E / range),
         };
         let near: Vec<u32> = (0..all.len() as u32).collect();
