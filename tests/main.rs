@@ -21,6 +21,7 @@ mod drift;
 mod drive;
 mod drivers;
 mod dynamics;
+mod every;
 mod expressions;
 mod floors;
 mod forces;

@@ -213,6 +213,7 @@ fn compare() -> QueryResult {
 fn rank() -> QueryResult {
     let option = |label: &str, value, counts, status| RankedOption {
         label: label.into(),
+        under: Vec::new(),
         settings: Vec::new(),
         value,
         counts,

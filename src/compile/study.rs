@@ -99,10 +99,23 @@ pub struct Query {
     pub point: Vec<(String, String)>,
     /// What is asked.
     pub ask: Ask,
+    /// Where it is asked under every value of a parameter: this is one of them.
+    pub every: Option<Every>,
     /// The horizon with its unit, where a formula or metric ranges up to it.
     pub horizon: Option<String>,
     /// What was drawn once for the run, so that its results are about it alone: roadmaps.
     pub given: Option<String>,
+}
+
+/// One of several values of a parameter under each of which something is asked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Every {
+    /// The parameter.
+    pub name: String,
+    /// Its values, as written.
+    pub values: Vec<String>,
+    /// The place of this one among them.
+    pub place: usize,
 }
 
 /// A measure as one would say it.
@@ -179,6 +192,9 @@ pub enum Ask {
         measure: Measure,
         /// The procedure; `epsilon` is the loss that does not matter.
         ranking: Chosen,
+        /// Under how many values of a parameter each option is asked for its score: the least counts. The options stand one
+        /// after the other, each under all values.
+        models: usize,
     },
 }
 

@@ -5,6 +5,7 @@ use super::cause;
 use super::compare::CompareSampling;
 use super::entry::EstimateEntry;
 use super::estimate::EstimateSampling;
+use super::every;
 use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
@@ -19,7 +20,7 @@ use super::watch::Watch;
 use super::witness;
 use super::words;
 use crate::base::random::TrialKey;
-use crate::compile::study::{Ask, Measure, MeasureKind, Query};
+use crate::compile::study::{Ask, Measure, MeasureKind, Query, RankOption};
 use crate::logic::{Root, Sought};
 use crate::stats::{Coverage, Decision, Statement};
 use crate::trials::budget::{Budget, DEFAULT_TRIALS};
@@ -394,7 +395,7 @@ impl Answers<'_> {
         watch: &dyn Watch,
     ) -> Result<Option<QueryResult>, Fault> {
         let query = rank.query();
-        let Ask::Rank { options, measure, ranking } = &query.ask else {
+        let Ask::Rank { options, measure, ranking, models } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
@@ -416,10 +417,14 @@ impl Answers<'_> {
             let column = options[arm].target.column;
             Some(First { prepared: setup.worlds[arm], column, item, settings: settings(arm) })
         });
-        let arm = ranked.choice.arm;
+        let models = *models;
+        // Of several models that under which the choice did worst.
+        let columns = ranked.choice.arm * models..(ranked.choice.arm + 1) * models;
+        let value = |arm: &usize| ranked.values[*arm].0;
+        let arm = columns.min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or_default();
         let (own, prepared, column) = (settings(arm), setup.worlds[arm], options[arm].target.column);
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
-        let listed = tables::ranked(&ranked, options);
+        let listed = tables::ranked(&ranked, options, models, query.every.as_ref());
         let score = measured_words(query, measure, joined.clipped);
         if let Some(choice) = &listed.choice {
             if listed.gap < ranked.scale {
@@ -446,9 +451,19 @@ impl Answers<'_> {
             let of = (column, options[arm].advice);
             result.witnesses = self.witnesses(&result, prepared, of, &picks, &own);
         }
+        if let Some(every) = &query.every {
+            result.every = every::of_ranking(every, &ranked, options, &listed);
+        }
         result.rank = Some(listed);
         result.evidence = ranked.evidence.map(|snapshots| {
-            let labels = options.iter().map(|option| option.label.clone()).collect();
+            let label = |option: &RankOption| match &query.every {
+                Some(every) => {
+                    let own = option.settings.iter().find(|(name, _)| *name == every.name);
+                    format!("{}, {}", option.label, own.map_or("", |(_, value)| value))
+                }
+                None => option.label.clone(),
+            };
+            let labels = options.iter().map(label).collect();
             Evidence::Options { labels, snapshots }
         });
         result.elapsed_s = rank.spent;

@@ -58,9 +58,10 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
             };
             (name, [numbers, ends(first)].concat())
         }
-        Ask::Rank { ranking, measure, .. } => {
+        Ask::Rank { ranking, measure, models, .. } => {
             let word = vec![("word", super::rank::WORD as f64)];
-            (ranking.spec.reported, [values(ranking), word, ends(measure)].concat())
+            let name = if *models > 1 { super::least::NAME } else { ranking.spec.reported };
+            (name, [values(ranking), word, ends(measure)].concat())
         }
     };
     method(name, &numbers)

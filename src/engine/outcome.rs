@@ -3,6 +3,7 @@
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
 mod distribution;
+mod every;
 mod evidence;
 mod ranking;
 mod witness;
@@ -13,6 +14,7 @@ use crate::base::fingerprint::Fingerprint;
 use crate::stats::Claim;
 pub use crate::trials::budget::Stop;
 pub use distribution::{Distribution, Histogram, Quantile, Step};
+pub use every::{Every, UnderOne};
 pub use evidence::{Evidence, Snapshot, Standing, next_after};
 pub use ranking::{RankedOption, Ranking, Status};
 pub use witness::{Shows, Witness};
@@ -133,6 +135,8 @@ pub struct QueryResult {
     pub rank: Option<Ranking>,
     /// Distribution of a metric.
     pub distribution: Option<Distribution>,
+    /// What was found under every value of a parameter, where that was asked.
+    pub every: Option<Every>,
     /// Details of an estimate by splitting.
     pub rare: Option<Rare>,
     /// How the evidence grew, where that was asked for.
@@ -448,4 +452,16 @@ pub struct Counts {
     pub failures: u64,
     /// Those that diverged or hit a cap.
     pub unresolved: u64,
+}
+
+impl Counts {
+    /// Both together.
+    pub(crate) fn and(self, more: Self) -> Self {
+        Self {
+            trials: self.trials + more.trials,
+            successes: self.successes + more.successes,
+            failures: self.failures + more.failures,
+            unresolved: self.unresolved + more.unresolved,
+        }
+    }
 }

@@ -6,6 +6,7 @@
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
+use super::least::Least;
 use super::outcome::{Standing, Stop, next_after};
 use super::pilot::Pilot;
 use super::prepared::PreparedWorld;
@@ -30,13 +31,14 @@ enum Procedure {
     Booleans(Race<Booleans>),
     Scores { race: Race<Scores>, range: (f64, f64) },
     Each(Each),
+    Least(Least),
 }
 
 /// A ranking that has stopped.
 pub(super) struct RankOutcome {
-    /// What each option consumed.
+    /// What each option consumed; of several models, under each of them.
     pub(super) tallies: Vec<Tally>,
-    /// Estimate and interval of each option, jointly valid at all times.
+    /// Estimate and interval of each option, under each model, jointly valid at all times.
     pub(super) values: Vec<(f64, stats::Interval)>,
     /// The choice.
     pub(super) choice: Choice,
@@ -60,6 +62,8 @@ pub(super) struct RankSetup<'s> {
     pub(super) kind: MeasureKind,
     /// Loss that does not matter, error, procedure.
     pub(super) rule: (f64, f64, Ranking),
+    /// Under how many models each option is asked for its score.
+    pub(super) models: usize,
 }
 
 impl RankSetup<'_> {
@@ -74,6 +78,13 @@ impl Procedure {
         let (epsilon, delta, ranking) = setup.rule;
         let arms = setup.options.len();
         let deviations: Vec<f64> = setup.options.iter().map(|option| option.deviation).collect();
+        if setup.models > 1 {
+            if let MeasureKind::Quantile { .. } = setup.kind {
+                return Err(Fault::Unsuitable);
+            }
+            let range = setup.kind.range();
+            return Ok(Self::Least(Least::new((arms, setup.models), (epsilon, delta), range, deviations)?));
+        }
         Ok(match (&setup.kind, ranking) {
             (MeasureKind::Probability, Ranking::Okamoto) => {
                 Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?.preferring(deviations))
@@ -97,6 +108,7 @@ impl Procedure {
             Self::Booleans(race) => race.next_round().to_vec(),
             Self::Scores { race, .. } => race.next_round().to_vec(),
             Self::Each(each) => each.next_round().to_vec(),
+            Self::Least(least) => least.next_round().to_vec(),
         }
     }
 
@@ -105,6 +117,7 @@ impl Procedure {
             Self::Booleans(race) => race.finished(),
             Self::Scores { race, .. } => race.finished(),
             Self::Each(each) => each.finished(),
+            Self::Least(least) => least.finished(),
         }
     }
 
@@ -113,6 +126,7 @@ impl Procedure {
             Self::Booleans(race) => race.choice(),
             Self::Scores { race, .. } => race.choice(),
             Self::Each(each) => each.choice(),
+            Self::Least(least) => least.choice(),
         }
     }
 
@@ -120,6 +134,7 @@ impl Procedure {
         match self {
             Self::Booleans(race) => race.feed(arm, &cells.iter().map(outcome).collect::<Vec<Outcome>>())?,
             Self::Each(each) => each.feed(arm, &cells.iter().map(outcome).collect::<Vec<Outcome>>())?,
+            Self::Least(least) => least.feed(arm, cells),
             Self::Scores { race, range } => {
                 let scores: Vec<Option<f64>> =
                     cells.iter().map(|c| value(c).map(|v| (v - range.0) / (range.1 - range.0))).collect();
@@ -392,7 +407,11 @@ impl<'s> RankSampling<'s> {
         };
         self.spent = spent + budget.elapsed() - started;
         let choice = self.procedure.choice();
-        self.note(|arm| arm == choice.arm || choice.open.contains(&arm) || choice.certified.contains(&arm));
+        let models = self.setup.models;
+        let is_open = |option| {
+            option == choice.arm || choice.open.contains(&option) || choice.certified.contains(&option)
+        };
+        self.note(|arm| is_open(arm / models));
         let evidence = self.evidence.take();
         let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
         let values = (0..arms)

@@ -5,6 +5,7 @@ use super::call::Call;
 use super::compare::{CompareSampling, Sides};
 use super::entry::EstimateEntry;
 use super::estimate::{Advance, EstimateSampling};
+use super::every;
 use super::executor::Executor;
 use super::fault::{Fault, MOST_VALUES};
 use super::flaw::Flaw;
@@ -96,7 +97,7 @@ pub fn run(
     }
     watch.finished();
     let trials = consumed(&asked, &results);
-    let results: Vec<QueryResult> = results.into_iter().flatten().collect();
+    let results = every::joined(&asked, results);
     let title = if study.title.is_empty() { &call.line.scenario } else { &study.title };
     Ok(CallResult {
         tracks: study.tracks.clone(),
@@ -375,7 +376,7 @@ impl<'a> Session<'a> {
     where
         'a: 'q,
     {
-        let Ask::Rank { options, measure, ranking } = &query.ask else {
+        let Ask::Rank { options, measure, ranking, models } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let Make::Ranking(kind) = ranking.spec.make else { return Err(Fault::Unsuitable) };
@@ -385,6 +386,7 @@ impl<'a> Session<'a> {
             worlds: worlds.collect::<Result<_, _>>()?,
             kind: measure.kind.clone(),
             rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
+            models: *models,
         };
         let series = Series { seed: self.call.seed, branch: self.call.branch };
         RankSampling::new(query, setup, series, self.call.shows_evidence)

@@ -4,7 +4,9 @@ use super::compare::Gap;
 use super::outcome::{Comparison, Counts, RankedOption, Ranking, Side, Status};
 use super::procedure::{around, of_mean, sequence, share};
 use super::rank::RankOutcome;
-use crate::compile::study::RankOption;
+use crate::base::math::at_most;
+use crate::compile::study::{Every, RankOption};
+use crate::stats;
 
 /// Both sides of a comparison and their difference, with intervals.
 pub(super) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
@@ -33,44 +35,73 @@ pub(super) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparis
     Comparison { first: side(0), second: side(1), difference }
 }
 
+/// The value of an option and its counts: of several models that under which its score is least, with the least ends.
+fn of_option(ranked: &RankOutcome, models: usize, option: usize) -> (f64, stats::Interval, Counts) {
+    let columns = option * models..(option + 1) * models;
+    let start = (f64::INFINITY, ranked.values[option * models].1, Counts::default());
+    columns.fold(start, |(estimate, mut interval, mut counts), column| {
+        let (own, ends) = ranked.values[column];
+        interval.low = at_most(interval.low, ends.low);
+        interval.high = at_most(interval.high, ends.high);
+        let own_counts = ranked.tallies[column].counts;
+        counts = counts.and(own_counts);
+        (if own_counts.trials > 0 { at_most(estimate, own) } else { estimate }, interval, counts)
+    })
+}
+
 /// The options of a ranking, the choice first, then by score.
-pub(super) fn ranked(ranked: &RankOutcome, options: &[RankOption]) -> Ranking {
+pub(super) fn ranked(
+    ranked: &RankOutcome,
+    options: &[RankOption],
+    models: usize,
+    every: Option<&Every>,
+) -> Ranking {
+    let values = every.map_or(&[][..], |every| &every.values);
     let choice = &ranked.choice;
+    let all: Vec<_> = (0..options.len() / models).map(|option| of_option(ranked, models, option)).collect();
     // One of several is chosen for what it did in trials; the only one there is needs none.
-    let told = |tally: &super::tally::Tally| tally.counts.trials > tally.counts.unresolved;
-    let chosen = ranked.finished || ranked.tallies.iter().any(told);
-    let mut order: Vec<usize> = (0..options.len()).collect();
+    let told = |(.., counts): &(f64, stats::Interval, Counts)| counts.trials > counts.unresolved;
+    let chosen = ranked.finished || all.iter().any(told);
+    let mut order: Vec<usize> = (0..all.len()).collect();
     // Those without trials have no value, and come last.
-    let key = |arm: usize| (arm != choice.arm, ranked.tallies[arm].counts.trials == 0);
-    let value = |arm: usize| if key(arm).1 { 0.0 } else { -ranked.values[arm].0 };
+    let key = |option: usize| (option != choice.arm, all[option].2.trials == 0);
+    let value = |option: usize| if key(option).1 { 0.0 } else { -all[option].0 };
     order.sort_by(|&a, &b| key(a).cmp(&key(b)).then(value(a).total_cmp(&value(b))).then(a.cmp(&b)));
-    let best = ranked.values.iter().fold(f64::NEG_INFINITY, |best, (_, interval)| best.max(interval.low));
+    let best = all.iter().fold(f64::NEG_INFINITY, |best, (_, interval, _)| best.max(interval.low));
     let listed: Vec<RankedOption> = order
         .iter()
-        .map(|&arm| {
-            let (estimate, interval) = ranked.values[arm];
-            let estimate = if ranked.tallies[arm].counts.trials == 0 { f64::NAN } else { estimate };
+        .map(|&option| {
+            let (estimate, interval, counts) = all[option];
+            let estimate = if counts.trials == 0 { f64::NAN } else { estimate };
             let status = if !chosen {
                 Status::Open
-            } else if arm == choice.arm {
+            } else if option == choice.arm {
                 Status::Chosen
-            } else if ranked.finished && choice.certified.contains(&arm) {
+            } else if ranked.finished && choice.certified.contains(&option) {
                 Status::Tied
-            } else if choice.beaten.contains(&arm) || interval.high < best {
+            } else if choice.beaten.contains(&option) || interval.high < best {
                 Status::Beaten
             } else {
                 Status::Open
             };
+            let columns = option * models..(option + 1) * models;
+            let under = columns.filter(|_| models > 1).map(|column| {
+                let (estimate, interval) = ranked.values[column];
+                let counts = ranked.tallies[column].counts;
+                let value = around(if counts.trials == 0 { f64::NAN } else { estimate }, interval);
+                Side { label: values.get(column % models).cloned().unwrap_or_default(), value, counts }
+            });
             RankedOption {
-                label: options[arm].label.clone(),
-                settings: options[arm].settings.clone(),
+                label: options[option * models].label.clone(),
+                settings: if models > 1 { Vec::new() } else { options[option].settings.clone() },
                 value: around(estimate, interval),
-                counts: ranked.tallies[arm].counts,
+                counts,
                 status,
+                under: under.collect(),
             }
         })
         .collect();
     let gap = if chosen { choice.gap * ranked.scale } else { f64::INFINITY };
     let tied = listed.iter().any(|option| option.status == Status::Tied);
-    Ranking { choice: chosen.then(|| options[choice.arm].label.clone()), gap, tied, options: listed }
+    Ranking { choice: chosen.then(|| options[choice.arm * models].label.clone()), gap, tied, options: listed }
 }

@@ -2,7 +2,7 @@
 
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
-use crate::compile::study::Ask;
+use crate::compile::study::{Ask, RankOption};
 use crate::model::{Agent, AgentId, Body, GaitRule, Move, Scenario};
 use crate::route::Ways;
 use crate::syntax::codes::Code;
@@ -91,14 +91,22 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
         let moves = &world.scenario.moves;
         for query in &mut study.queries {
             let Ask::Rank { options, .. } = &mut query.ask else { continue };
-            options.retain_mut(|option| {
+            let of_path = |option: &RankOption| {
                 let here = option.advice.filter(|_| option.target.world == number);
-                let Some((of, k)) = here.filter(|(of, _)| moves[*of].paths.is_some()) else { return true };
-                let Some((label, _)) = moves[of].options.get(k) else { return false };
-                option.label.clone_from(label);
+                here.filter(|(of, _)| moves[*of].paths.is_some())
+            };
+            // Under every value of a parameter a path stands in several worlds; one of them without it has none to rank.
+            let missing: Vec<_> = options
+                .iter()
+                .filter_map(of_path)
+                .filter(|(of, k)| moves[*of].options.get(*k).is_none())
+                .collect();
+            options.retain(|option| option.advice.is_none_or(|advice| !missing.contains(&advice)));
+            for option in options {
+                let Some((of, k)) = of_path(option) else { continue };
+                option.label.clone_from(&moves[of].options[k].0);
                 option.deviation = moves[of].deviations()[k];
-                true
-            });
+            }
         }
     }
     errors

@@ -91,7 +91,7 @@ fn add(all: &mut Vec<String>, names: impl Iterator<Item = String>) {
 #[derive(Clone, Copy)]
 struct Row<'a> {
     result: &'a QueryResult,
-    /// `result`, `option`, `first`, `second` or `difference`.
+    /// `result`, `option`, `under`, `first`, `second` or `difference`.
     kind: &'static str,
     label: &'a str,
     status: &'static str,
@@ -128,8 +128,20 @@ fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
         }));
     }
     rows.extend(result.rank.iter().flat_map(|ranking| &ranking.options).map(|option| {
-        let RankedOption { label, settings: own, value, counts, status } = option;
+        let RankedOption { label, settings: own, value, counts, status, .. } = option;
         Row { kind: "option", label, status: status.name(), value: *value, counts: *counts, own, ..whole }
+    }));
+    rows.extend(result.every.iter().flat_map(|every| &every.parts).map(|part| {
+        let best = part.best.as_ref().map_or("", |(option, _)| option.as_str());
+        Row {
+            kind: "under",
+            label: best,
+            status: part.verdict.map_or("", Verdict::name),
+            value: part.figure,
+            counts: part.counts,
+            own: std::slice::from_ref(&part.setting),
+            ..whole
+        }
     }));
     rows
 }

@@ -7,8 +7,8 @@
 use super::setting;
 use crate::base::random;
 use crate::engine::outcome::{
-    CallResult, Comparison, Counts, Distribution, Evidence, Finding, Interval, Method, QueryResult, Ranking,
-    Shows, Side, Snapshot, Standing, Witness,
+    CallResult, Comparison, Counts, Distribution, Every, Evidence, Finding, Interval, Method, QueryResult,
+    Ranking, Shows, Side, Snapshot, Standing, UnderOne, Verdict, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -82,7 +82,7 @@ pub(super) fn result(result: &QueryResult) -> Value {
     put("line", json!(result.asked.line));
     put("settings", setting::object(&result.asked.settings));
     put("kind", json!(result.asked.kind.name()));
-    put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
+    put("verdict", json!(result.verdict.map(Verdict::name)));
     put("certifies", json!(result.certifies));
     put("horizon", json!(result.asked.horizon));
     if let Some(given) = &result.asked.given {
@@ -121,12 +121,18 @@ pub(super) fn result(result: &QueryResult) -> Value {
         let options = options.iter().map(|option| {
             let mut object = numbered("option", &option.label, &option.value, &option.counts);
             object.insert("status".into(), json!(option.status.name()));
+            if !option.under.is_empty() {
+                object.insert("under".into(), option.under.iter().map(side).collect());
+            }
             if !option.settings.is_empty() {
                 object.insert("settings".into(), setting::object(&option.settings));
             }
             Value::Object(object)
         });
         put("options", options.collect());
+    }
+    if let Some(found) = &result.every {
+        put("every", every(found));
     }
     if let Some(found) = &result.distribution {
         put("distribution", distribution(found));
@@ -172,6 +178,21 @@ fn numbered(key: &str, label: &str, value: &Interval, trials: &Counts) -> Map<St
     object.extend(interval(value));
     object.extend(counts(trials));
     object
+}
+
+fn every(every: &Every) -> Value {
+    let part = |part: &UnderOne| {
+        let mut object = interval(&part.figure);
+        object.insert("value".into(), json!(part.setting.1));
+        object.extend(counts(&part.counts));
+        object.insert("verdict".into(), json!(part.verdict.map(Verdict::name)));
+        if let Some((option, worth)) = &part.best {
+            object.insert("best".into(), json!({ "option": option, "estimate": number(*worth) }));
+        }
+        Value::Object(object)
+    };
+    let parts: Vec<Value> = every.parts.iter().map(part).collect();
+    json!({ "name": every.name, "least": every.least_value(), "values": parts })
 }
 
 fn side(side: &Side) -> Value {

@@ -21,7 +21,7 @@ pub(crate) fn check(
     relation: BinaryOp,
     threshold: &Expr,
     clauses: &Clauses,
-    family: Option<f64>,
+    (family, claims): (Option<f64>, usize),
     scope: ScopeId,
 ) -> Lowered<(Ask, bool)> {
     let locals = Locals::of(scope);
@@ -29,7 +29,7 @@ pub(crate) fn check(
     // What is wrong with the measure, the threshold and the procedure is said at once.
     let (observed, sketch) = measures::measure(context, measure, scope);
     let bound = bound_of(context, relation, threshold, sketch, &locals);
-    let allowance = Allowance { family, claims: 1 };
+    let allowance = Allowance { family, claims };
     let confidence = methods::delta(context, clauses, &locals);
     let width = methods::no_width(context, clauses, sketch.what);
     let test = match (sketch.what, &clauses.by) {

@@ -23,7 +23,7 @@ use crate::compile::context::{
 use crate::compile::lower::{call, name, traffic};
 use crate::compile::people::kinds;
 use crate::compile::query::families::Allowance;
-use crate::compile::study::{Ask, Query, Said, Study, World};
+use crate::compile::study::{Ask, Every, Query, Said, Study, World};
 use crate::compile::written;
 use crate::stats::spec::Make;
 use crate::syntax::ast::{self, Expr, PropertyFile, PropertyItem, QueryKind};
@@ -215,10 +215,12 @@ impl<'a> Compiler<'a> {
         settings: &[(String, String)],
         family: Option<f64>,
     ) -> Lowered<()> {
-        match bindings::under(self, &query.clauses.under, scope, base, point) {
-            Ok(world) => {
-                starts::note_asked(self, query, world.0);
-                self.ask(query, scope, world, settings, family)
+        match bindings::worlds(self, query, scope, base, point) {
+            Ok(worlds) => {
+                for (world, _) in &worlds {
+                    starts::note_asked(self, query, *world);
+                }
+                self.ask_all(query, scope, worlds, settings, family)
             }
             Err(Reported) => {
                 // The world of the call stands in, so that this hides nothing else that is surely wrong.
@@ -226,7 +228,7 @@ impl<'a> Compiler<'a> {
                     |site: &Site<'_>| (site.context.sink.diagnostics.len(), site.context.names.failures());
                 let before: Vec<_> = self.sites.iter().map(said).collect();
                 let asked_before = self.queries.len();
-                let asked = self.ask(query, scope, (base, Vec::new()), settings, family);
+                let asked = self.ask(query, scope, (base, Vec::new()), settings, (family, 1));
                 // Sides of a comparison are set up from it; another query that asks for them sets up its own.
                 let mut sides = self.sites.split_off(before.len());
                 self.known.values_mut().for_each(|alike| alike.retain(|at| *at < before.len()));
@@ -246,6 +248,55 @@ impl<'a> Compiler<'a> {
         }
     }
 
+    /// A query in each of its worlds: one, or those of `under every`.
+    fn ask_all(
+        &mut self,
+        query: &'a ast::Query,
+        scope: ScopeId,
+        worlds: Vec<(usize, Vec<(String, String)>)>,
+        settings: &[(String, String)],
+        family: Option<f64>,
+    ) -> Lowered<()> {
+        let Some(every) = &query.clauses.every else {
+            return worlds
+                .into_iter()
+                .try_for_each(|world| self.ask(query, scope, world, settings, (family, 1)));
+        };
+        let (index, claims) = (self.next_index, worlds.len());
+        let value = |(_, own): &(usize, Vec<(String, String)>)| {
+            own.iter().find(|(name, _)| *name == every.name.name).map(|(_, value)| value.clone())
+        };
+        let values: Vec<String> = worlds.iter().filter_map(value).collect();
+        let is_ranking = matches!(query.kind, QueryKind::Rank { .. });
+        // A ranking has one certificate, whose error its options share already.
+        let claims = if is_ranking { 1 } else { claims };
+        // A family counts the query as one claim.
+        let family = family.map(|share| share / claims as f64);
+        // Each part is asked, whatever another one asks.
+        let known = std::mem::take(&mut self.queries);
+        let (mut parts, mut asked) = (Vec::new(), Ok(()));
+        for world in worlds {
+            self.next_index = index;
+            asked = self.ask(query, scope, world, settings, (family, claims)).and(asked);
+            parts.append(&mut self.queries);
+        }
+        self.queries = known;
+        asked?;
+        for (place, part) in parts.iter_mut().enumerate() {
+            part.every = Some(Every { name: every.name.name.clone(), values: values.clone(), place });
+        }
+        if is_ranking {
+            parts = Vec::from_iter(rankings::joined(parts));
+        }
+        let is_known = |part: &Query| {
+            self.queries.iter().any(|known| known.index == part.index && known.ask == part.ask)
+        };
+        if !parts.iter().all(is_known) {
+            self.queries.extend(parts);
+        }
+        Ok(())
+    }
+
     /// A query in a world, with what it sets itself.
     fn ask(
         &mut self,
@@ -253,7 +304,7 @@ impl<'a> Compiler<'a> {
         scope: ScopeId,
         (site, own): (usize, Vec<(String, String)>),
         settings: &[(String, String)],
-        family: Option<f64>,
+        (family, claims): (Option<f64>, usize),
     ) -> Lowered<()> {
         let clauses = &query.clauses;
         let locals = Locals::of(scope);
@@ -263,7 +314,16 @@ impl<'a> Compiler<'a> {
         let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
         match &query.kind {
             QueryKind::Check { measure, relation, threshold } => {
-                let ask = checks::check(self, site, measure, *relation, threshold, clauses, family, scope);
+                let ask = checks::check(
+                    self,
+                    site,
+                    measure,
+                    *relation,
+                    threshold,
+                    clauses,
+                    (family, claims),
+                    scope,
+                );
                 let (ask, unbounded) = ask?;
                 let said = titles::said(&self.sites[site].context, measure, Some((*relation, threshold)));
                 self.keep_query(
@@ -382,6 +442,7 @@ impl<'a> Compiler<'a> {
             settings,
             point: Vec::new(),
             ask,
+            every: None,
             horizon,
             given: None,
         });

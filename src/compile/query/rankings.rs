@@ -10,7 +10,7 @@ use crate::compile::query::{
     measures::{self, Observed, Sketch, What},
     settings::{self, Setting},
 };
-use crate::compile::study::{Ask, MeasureKind, RankOption};
+use crate::compile::study::{Ask, MeasureKind, Query, RankOption};
 use crate::logic::Root;
 use crate::logic::Tree;
 use crate::model::{AgentId, Bool, Move, Num, Who};
@@ -109,7 +109,7 @@ pub(crate) fn rank<'a>(
         deviation: c.deviation,
     });
     let options = options.collect();
-    Ok((Ask::Rank { options, measure: first, ranking }, unbounded, world))
+    Ok((Ask::Rank { options, measure: first, ranking, models: 1 }, unbounded, world))
 }
 
 /// The options of moves.
@@ -318,4 +318,32 @@ fn without_moves<T>(context: &mut Context<'_>, (id, paths): (AgentId, bool), at:
     let said = format!("the scenario declares no {what} for `{name}`");
     let about = if paths { About::Other } else { About::Moves };
     context.report(error!(E0606, at, "{said}"; hint: "{hint}").about(about))
+}
+
+/// One ranking of those under every value of a parameter: each option stands under all values, one after the other.
+pub(crate) fn joined(all: Vec<Query>) -> Option<Query> {
+    let models = all.len();
+    let mut queries = all.into_iter();
+    let mut first = queries.next()?;
+    let lists: Vec<Vec<RankOption>> = std::iter::once(&first)
+        .chain(queries.as_slice())
+        .filter_map(|query| {
+            let Ask::Rank { options, .. } = &query.ask else { return None };
+            let own = |mut option: RankOption| {
+                option.settings = [query.settings.as_slice(), &option.settings].concat();
+                option
+            };
+            Some(options.iter().cloned().map(own).collect())
+        })
+        .collect();
+    let count = lists.iter().map(Vec::len).min().unwrap_or(0);
+    let each = (0..count).flat_map(|at| lists.iter().map(move |list| list[at].clone()));
+    let joined: Vec<RankOption> = each.collect();
+    if let Some(every) = &first.every {
+        first.settings.retain(|(name, _)| *name != every.name);
+    }
+    if let Ask::Rank { options, models: known, .. } = &mut first.ask {
+        (*options, *known) = (joined, models);
+    }
+    Some(first)
 }

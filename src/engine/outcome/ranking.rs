@@ -1,7 +1,7 @@
 //! The outcome of a `rank`.
 
 use super::Counts;
-use super::Interval;
+use super::{Interval, Side};
 
 /// The outcome of a `rank`.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +30,8 @@ pub struct RankedOption {
     pub counts: Counts,
     /// What is known of it.
     pub status: Status,
+    /// Its score under each of several models; empty for one.
+    pub under: Vec<Side>,
 }
 
 /// What is known of an option.

@@ -117,19 +117,22 @@ fn arms(query: &Query, result: &QueryResult) -> Vec<Arm> {
             };
             vec![side(first.target, &settings[0]), side(second.target, &settings[1])]
         }
-        Ask::Rank { options, .. } => {
+        Ask::Rank { options, models, .. } => {
             let listed = result.rank.iter().flat_map(|ranking| &ranking.options);
-            let trials = |label: &str| {
-                listed.clone().find(|option| option.label == label).map_or(0, |option| option.counts.trials)
+            let trials = |label: &str, model: usize| {
+                let listed = listed.clone().find(|option| option.label == label);
+                listed.map_or(0, |option| {
+                    option.under.get(model).map_or(option.counts, |side| side.counts).trials
+                })
             };
-            let arm = |option: &crate::compile::study::RankOption| Arm {
+            let arm = |(column, option): (usize, &crate::compile::study::RankOption)| Arm {
                 target: option.target,
                 advice: option.advice,
                 label: option.label.clone(),
                 settings: [query.settings.as_slice(), &option.settings].concat(),
-                trials: trials(&option.label),
+                trials: trials(&option.label, column % models),
             };
-            options.iter().map(arm).collect()
+            options.iter().enumerate().map(arm).collect()
         }
     }
 }

@@ -48,6 +48,8 @@ pub(super) struct Facts {
     pub(super) head: String,
     /// The estimate and its interval.
     pub(super) figures: String,
+    /// The figures under each value of `under every`.
+    pub(super) every: Vec<String>,
     pub(super) certified: String,
     pub(super) given: Option<String>,
     pub(super) trials: String,
@@ -166,6 +168,7 @@ fn facts(
     Facts {
         head: if swept { settings(result) } else { String::new() },
         figures,
+        every: text::under_each(result),
         certified: certified(result),
         given: result.asked.given.clone(),
         trials: text::trials(result),

@@ -1,6 +1,7 @@
 //! The block of one result.
 
 use super::columns::Cell;
+use super::every;
 use super::rows;
 use super::rows::{MARGIN, line, printed};
 use crate::engine::at_most;
@@ -27,6 +28,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     } else {
         value(text, result, palette);
     }
+    every::write(text, result, palette);
     let statement = certified(result);
     if !statement.is_empty() {
         line(text, &format!("certified: {statement}"));

@@ -2,6 +2,7 @@
 
 mod block;
 pub(super) mod columns;
+mod every;
 mod rows;
 
 use super::number::{count, counted, duration, rate, some};
@@ -10,6 +11,7 @@ use crate::engine::outcome::{CallResult, QueryResult, Shortfall, Verdict};
 use crate::report::phrase::{certified, settings};
 pub(super) use block::{counts, moment, shown, trials, word};
 use columns::Cell;
+pub(super) use every::lines as under_each;
 pub(super) use rows::printed;
 use std::fmt::Write as _;
 
@@ -58,7 +60,7 @@ pub fn block(result: &QueryResult, palette: Palette) -> String {
 
 /// Whether two successive results are of one query under different settings.
 pub(super) fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
-    let simple = |r: &QueryResult| r.compare.is_none() && r.rank.is_none();
+    let simple = |r: &QueryResult| r.compare.is_none() && r.rank.is_none() && r.every.is_none();
     a.asked.index == b.asked.index
         && !a.asked.settings.is_empty()
         && !b.asked.settings.is_empty()

@@ -68,7 +68,9 @@ impl Query {
             QueryKind::Rank { of: Ranked::Values(list), .. } => list.iter().any(|(own, _)| own.name == name),
             _ => false,
         };
-        by_kind || among(&self.clauses.under)
+        by_kind
+            || among(&self.clauses.under)
+            || self.clauses.every.as_ref().is_some_and(|every| every.name.name == name)
     }
 }
 
@@ -218,4 +220,17 @@ pub struct Clauses {
     pub by: Option<Method>,
     /// `under name = value, …` of check, estimate and rank.
     pub under: Vec<Binding>,
+    /// `under every name` of check and rank, with values or with those from which the parameter chooses.
+    pub every: Option<Every>,
+}
+
+/// `under every density in 0.2 /m^2, 0.8 /m^2`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Every {
+    /// The parameter.
+    pub name: Ident,
+    /// Its values, if they are written.
+    pub values: Option<Vec<Expr>>,
+    /// Where.
+    pub span: Span,
 }

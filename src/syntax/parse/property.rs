@@ -2,6 +2,7 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
+use crate::syntax::ast::property::Every;
 use crate::syntax::ast::{
     BinaryOp, Binding, Clauses, Ident, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query,
     QueryKind, Ranked, Values,
@@ -175,6 +176,14 @@ impl Builder<'_> {
                     let name = self.ident(&parts.part(Rule::name)?);
                     let arguments = parts.map(|binding| self.binding(binding)).collect::<Option<_>>()?;
                     clauses.by.replace(Method { name, arguments, span }).is_some()
+                }
+                Rule::every => {
+                    let name = self.ident(&parts.part(Rule::ident)?);
+                    let values = match parts.part(Rule::value_list) {
+                        Some(list) => Some(Parts::of(list).map(|value| self.expr(value)).collect()),
+                        None => None,
+                    };
+                    clauses.every.replace(Every { name, values, span }).is_some()
                 }
                 _ => {
                     let bindings = self.bindings(parts.part(Rule::bindings)?)?;
