@@ -190,3 +190,67 @@ fn people_are_asked_under_every_model() {
     let table = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "csv"]);
     assert_eq!(table.out.lines().filter(|line| line.contains(",under,")).count(), 6, "{}", table.out);
 }
+
+/// A scene in which people walk as `smc1`, with a field that the collision-free speed model lacks.
+const WALK: &str = "horizon = 4 s\nstep = 0.02 s\n\
+    scene { wall (0, 0) -- (20, 0); wall (0, 3) -- (20, 3); region exit: rect (18, 0) .. (20, 3) }\n\
+    kind adult: sfm preset smc1 { headway = 0.7 s; radius = 0.2 m }\n\
+    agent user: adult { at = (1, 1.5); route = exit }\n\
+    moves user for 1 s { heading 20 deg; heading -20 deg; stop }\n";
+
+/// `--models` asks the same files under each model: checks and rankings as a whole, estimates one by one.
+#[test]
+fn the_call_asks_under_models() {
+    let text = "property far = F<=4 s (travelled(user) > 1 m)\n\
+        check P(far) >= 0.5\nestimate P(far) within 0.2\n\
+        rank moves of user by P(far) within 0.2\n\
+        rank moves of user by P(far) within 0.2 by one_challenger()\n";
+    let place = Place::new(&[("a.scn", WALK), ("a.bltl", text)]);
+    let call = |words: &[&str]| place.call(&[&["check", "a.scn", "a.bltl"], words].concat());
+    let said = call(&["--models", "smc1,cfs2,helbing2000"]);
+    assert_eq!(said.code, Some(0), "{}{}", said.out, said.err);
+    assert!(said.out.contains("people as cfs2, helbing2000, smc1\n"), "{}", said.out);
+    assert!(said.out.contains("satisfied under 3 of 3"), "{}", said.out);
+    assert!(said.out.contains("the choice survives: it is best under each value"), "{}", said.out);
+    assert!(
+        said.err.contains("W0804") && said.err.matches("`headway` is left out").count() == 1,
+        "{}",
+        said.err
+    );
+    let json = call(&["--models", "smc1,cfs2", "-q", "--format", "json"]).json();
+    let settings: Vec<_> = json["results"].as_array().unwrap().iter().map(|one| &one["settings"]).collect();
+    // The check and the ranking once, the estimate and the ranking with its own procedure twice.
+    assert_eq!(settings.len(), 6);
+    assert_eq!(settings.iter().filter(|set| set["model"].is_null()).count(), 2, "{settings:?}");
+    let replay = json["results"][0]["witnesses"][0]["command"].as_str().unwrap().to_owned();
+    let line = replay.replace('\'', "");
+    let words: Vec<&str> = line.split(' ').skip(1).collect();
+    assert_eq!(place.call(&words).code, Some(0), "{replay}");
+    let alone = call(&["-q", "--only", "0"]);
+    assert!(alone.out.contains("people as smc1\n"), "{}", alone.out);
+}
+
+#[test]
+fn models_that_are_none_are_refused() {
+    let cases = [
+        ("smc1", "`--models` needs two presets at least"),
+        ("smc1,smc1", "`smc1` is listed twice"),
+        ("smc1,cfs3", "there is no preset `cfs3`"),
+    ];
+    let place =
+        Place::new(&[("a.scn", WALK), ("c.scn", COINS), ("a.bltl", "check P(F contact(user)) >= 0.5\n")]);
+    for (models, said) in cases {
+        let found = place.call(&["check", "a.scn", "a.bltl", "--models", models]);
+        assert!(
+            found.code == Some(2) && found.err.contains(said) && found.err.contains("E0705"),
+            "{}",
+            found.err
+        );
+    }
+    let found = place.call(&["check", "c.scn", "a.bltl", "--models", "smc1,cfs2"]);
+    assert!(
+        found.code == Some(2) && found.err.contains("no kind starts from a preset of people"),
+        "{}",
+        found.err
+    );
+}

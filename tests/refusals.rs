@@ -96,7 +96,13 @@ impl Folder for Texts {
 fn examine(case: &Case<'_>, base: &str) -> (Vec<Diagnostic>, Vec<Source>) {
     let settings: Vec<String> = case.call.iter().filter(|word| *word != "--set").cloned().collect();
     let properties = ["prop.bltl".to_owned()];
-    let names = Names { scenario: "model.scn", properties: &properties, settings: &settings, velocity: None };
+    let names = Names {
+        scenario: "model.scn",
+        properties: &properties,
+        settings: &settings,
+        velocity: None,
+        models: &[],
+    };
     let mut inputs = load(names, &mut Texts(case.texts(base)));
     if let Some(study) = &mut inputs.study {
         inputs.diagnostics.extend(survey(study, &[], 0, &Ways::default()));

@@ -33,8 +33,13 @@ impl Folder for Texts<'_> {
 
 fn parsed(scenario: &str, properties: &str, tracks: &str) -> Parsed {
     let mut texts = Texts { scenario, properties, tracks: tracks.to_owned() };
-    let names =
-        Names { scenario: "a.scn", properties: &["a.bltl".to_owned()], settings: &[], velocity: None };
+    let names = Names {
+        scenario: "a.scn",
+        properties: &["a.bltl".to_owned()],
+        settings: &[],
+        velocity: None,
+        models: &[],
+    };
     let parsed = parse(names, &mut texts);
     assert!(parsed.inputs.diagnostics.is_empty(), "{:?}", parsed.inputs.diagnostics);
     parsed

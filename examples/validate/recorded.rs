@@ -83,7 +83,10 @@ fn of_recording(
     trials: u64,
 ) -> Result<String, Box<dyn std::error::Error>> {
     let properties = [PROPERTIES.to_owned()];
-    let parsed = parse(Names { scenario: MODEL, properties: &properties, settings, velocity: None }, disk);
+    let parsed = parse(
+        Names { scenario: MODEL, properties: &properties, settings, velocity: None, models: &[] },
+        disk,
+    );
     let refused = |errors: Vec<smc::syntax::diagnostic::Diagnostic>| {
         errors.first().map_or_else(String::new, |first| first.title.clone())
     };

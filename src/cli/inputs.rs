@@ -158,7 +158,13 @@ pub(super) struct Loaded {
 }
 
 fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
-    Names { scenario: &model.scenario, properties, settings: &model.set, velocity: model.velocity }
+    Names {
+        scenario: &model.scenario,
+        properties,
+        settings: &model.set,
+        velocity: model.velocity,
+        models: &model.models,
+    }
 }
 
 /// Reads and parses what a call names; also the files that were opened, where they were found.

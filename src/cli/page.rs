@@ -29,6 +29,7 @@ pub(super) fn line(model: &Model, velocity: Option<Velocity>) -> CommandLine {
         settings: model.set.clone(),
         data: model.data.iter().map(|data| data.display().to_string()).collect(),
         velocity: velocity.map(|velocity| velocity.name().to_owned()),
+        models: model.models.clone(),
         ..CommandLine::default()
     }
 }

@@ -30,6 +30,9 @@ pub(super) struct Model {
     /// Also search this folder for recordings and imports. May be given several times.
     #[arg(long = "data", value_name = "DIR")]
     pub(super) data: Vec<PathBuf>,
+    /// Ask everything with people of each of these presets, whatever the scenario says: `smc1,cfs2,helbing2000`.
+    #[arg(long = "models", value_name = "PRESETS", value_delimiter = ',')]
+    pub(super) models: Vec<String>,
     /// Which velocities recordings have, where the call says so.
     #[arg(skip)]
     pub(super) velocity: Option<Velocity>,

@@ -9,7 +9,7 @@ use crate::logic::{Root, Tree};
 use crate::model::{AgentId, Body, Bool, Num, Scenario};
 use crate::stats::Chosen;
 use crate::syntax::source::Span;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Everything a call asks.
@@ -19,6 +19,8 @@ pub struct Study {
     pub title: String,
     /// The tracks of recordings that it reads, and which velocities they have: `seen` or `recorded`.
     pub tracks: Vec<(String, &'static str)>,
+    /// The presets from which its kinds of people start, in all worlds.
+    pub people: BTreeSet<&'static str>,
     /// The scenario under each combination of parameter values that is asked about.
     pub worlds: Vec<World>,
     /// The world that the call is about: with the values of `--set`, of a sweep the first.

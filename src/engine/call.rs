@@ -37,6 +37,8 @@ pub struct CommandLine {
     pub data: Vec<String>,
     /// Value of `--velocity`.
     pub velocity: Option<String>,
+    /// Values of `--models`.
+    pub models: Vec<String>,
 }
 
 impl CommandLine {
@@ -87,6 +89,9 @@ impl CommandLine {
         if let Some(velocity) = &self.velocity {
             words.extend(["--velocity".to_owned(), quoted(velocity)]);
         }
+        if !self.models.is_empty() {
+            words.extend(["--models".to_owned(), quoted(&self.models.join(","))]);
+        }
         words.join(" ")
     }
 }
@@ -135,6 +140,7 @@ mod tests {
             settings: vec!["n=2".into(), "d=0.1..0.8 by 0.1".into(), "gap=1 m".into()],
             data: vec!["my data".into()],
             velocity: None,
+            models: Vec::new(),
         };
         assert_eq!(
             line.check(),

@@ -16,7 +16,7 @@ pub(super) fn joined(asked: &[&Query], results: Vec<Option<QueryResult>>) -> Vec
         let is_part = query.every.is_some() && matches!(query.ask, Ask::Check { .. });
         let starts = query.every.as_ref().is_some_and(|every| every.place == 0);
         if !is_part || starts {
-            out.extend(check(std::mem::take(&mut parts)));
+            out.extend(check(&std::mem::take(&mut parts)));
         }
         match result {
             Some(result) if is_part => parts.push((query, result)),
@@ -24,12 +24,12 @@ pub(super) fn joined(asked: &[&Query], results: Vec<Option<QueryResult>>) -> Vec
             None => {}
         }
     }
-    out.extend(check(parts));
+    out.extend(check(&parts));
     out
 }
 
 /// One check of those under every value; `None` unless all were answered.
-fn check(parts: Vec<(&Query, QueryResult)>) -> Option<QueryResult> {
+fn check(parts: &[(&Query, QueryResult)]) -> Option<QueryResult> {
     let (first, _) = parts.first()?;
     let (every, Ask::Check { at_least, .. }) = (first.every.as_ref()?, &first.ask) else { return None };
     if parts.len() < every.values.len() {

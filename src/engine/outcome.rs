@@ -26,6 +26,8 @@ pub struct CallResult {
     pub scenario: String,
     /// The tracks that it reads, and which velocities they have: `seen` or `recorded`.
     pub tracks: Vec<(String, &'static str)>,
+    /// The presets that say how its people walk.
+    pub people: Vec<&'static str>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Version of the program.

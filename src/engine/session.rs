@@ -101,6 +101,7 @@ pub fn run(
     let title = if study.title.is_empty() { &call.line.scenario } else { &study.title };
     Ok(CallResult {
         tracks: study.tracks.clone(),
+        people: study.people.iter().copied().collect(),
         trials,
         interrupted: budget.is_interrupted(),
         failure,

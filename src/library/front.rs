@@ -1,6 +1,7 @@
 //! The front of every call: texts and files are read, decoded, parsed and compiled, and what is wrong with them is
 //! filtered once, so that every user of the crate sees the same errors.
 
+use super::models;
 use super::refusal::refusal;
 use crate::advise::groups;
 use crate::base::fingerprint::Fingerprint;
@@ -54,6 +55,8 @@ pub struct Names<'a> {
     pub settings: &'a [String],
     /// Which velocities recordings have, whatever the scenario says.
     pub velocity: Option<Velocity>,
+    /// Presets of people under each of which all queries are asked; empty if the scenario alone says who walks.
+    pub models: &'a [String],
 }
 
 /// All that was read, and what was found wrong with it.
@@ -135,7 +138,18 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
         reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
     }
     let in_files = reader.inputs.sources.len();
-    let settings: Vec<Setting> = names.settings.iter().filter_map(|text| reader.setting(text)).collect();
+    let mut settings: Vec<Setting> = names.settings.iter().filter_map(|text| reader.setting(text)).collect();
+    if !names.models.is_empty() && complete {
+        let text = names.models.join(",");
+        let source = Source::new(reader.next_id(), "--models", &text);
+        let span = Span::new(source.id, 0, text.len());
+        reader.inputs.sources.push(source);
+        match models::under((names.models, span), &mut scenario, &mut properties) {
+            Ok(sweep) if settings.iter().all(|set| set.name != sweep.name) => settings.push(sweep),
+            Ok(_) => {}
+            Err(error) => reader.report(error),
+        }
+    }
     let mut files = Files::grouped_by(groups);
     files.velocity = names.velocity;
     for request in requests(&scenario) {

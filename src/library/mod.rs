@@ -7,6 +7,7 @@
 mod diagnostics;
 mod front;
 mod model;
+mod models;
 mod options;
 mod paths;
 mod refusal;

@@ -84,7 +84,13 @@ impl Draft {
         let settings = self.assignments();
         let mut given = Given { draft: self, properties: properties.map_or("", |(_, text)| text) };
         let Inputs { sources, diagnostics, study, .. } = load(
-            Names { scenario: &self.name, properties: &names, settings: &settings, velocity: None },
+            Names {
+                scenario: &self.name,
+                properties: &names,
+                settings: &settings,
+                velocity: None,
+                models: &[],
+            },
             &mut given,
         );
         let found = Diagnostics::new(diagnostics, sources.clone());

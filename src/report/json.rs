@@ -35,6 +35,7 @@ pub fn object(run: &CallResult) -> Value {
         "warnings": run.warnings,
         "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
         "inputs": inputs,
+        "people": run.people,
         "tracks": run.tracks.iter().map(velocities).collect::<Vec<_>>(),
         "interrupted": run.interrupted,
         "error": Value::Null,

@@ -71,6 +71,7 @@ fn in_scene(
         scenario: scenario.to_owned(),
         set: Vec::new(),
         data: arguments.data.clone(),
+        models: Vec::new(),
         velocity: None,
     };
     let (study, inputs::Loaded { inputs, paths }) =

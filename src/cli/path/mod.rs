@@ -57,6 +57,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         scenario: scenario.to_owned(),
         set: arguments.set.clone(),
         data: arguments.data.clone(),
+        models: Vec::new(),
         velocity: None,
     };
     let nothing = Vec::new;

@@ -9,6 +9,8 @@ use std::sync::Arc;
 pub(crate) struct Roster {
     /// Their names.
     pub(crate) agent_names: Vec<String>,
+    /// The presets from which kinds of people start.
+    pub(crate) presets: BTreeSet<&'static str>,
     /// How many legs their routes have; of routes among moves, the most.
     pub(crate) legs: Vec<u32>,
     /// Where their starts are written.
@@ -31,6 +33,7 @@ impl Default for Roster {
     fn default() -> Self {
         Self {
             agent_names: Vec::new(),
+            presets: BTreeSet::new(),
             legs: Vec::new(),
             places: Places::default(),
             starts: None,

@@ -14,7 +14,7 @@ use crate::compile::scene::periodic;
 use crate::model::{self, Body, Law, Parameter, Planner, Stepper};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::About;
+use crate::syntax::diagnostic::{About, Diagnostic};
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -94,7 +94,9 @@ pub(crate) fn kind(context: &mut Context<'_>, name: &Ident) -> Lowered<Kind> {
 
 /// The parameters of a kind as it is declared.
 pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Kind> {
-    let preset = decl.preset.as_ref().map(|written| preset(context, written, &decl.body));
+    // What the call chooses may lack a field, which is left out then.
+    let checked = if decl.is_replaced { &[] } else { decl.body.as_slice() };
+    let preset = decl.preset.as_ref().map(|written| preset(context, written, checked));
     let mut kind = match (&decl.base, &preset) {
         (Some(base), _) => kind(context, base),
         (None, Some(Ok(preset))) => Ok(Kind { base: preset.model, ..Kind::default() }),
@@ -103,6 +105,7 @@ pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Ki
     let mut is_wrong = false;
     match (preset, &mut kind) {
         (Some(Ok(preset)), Ok(kind)) => {
+            context.roster.presets.insert(preset.name);
             let is_forced = |model| model::Kind::FORCED.contains(&model);
             if preset.model == kind.base || is_forced(preset.model) && is_forced(kind.base) {
                 for parameter in Parameter::of_kind(kind.base) {
@@ -129,6 +132,12 @@ pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Ki
     let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
     let rest = parameters(context, &decl.body, kind.as_mut().ok(), &Locals::default());
     for field in rest {
+        if decl.is_replaced && Parameter::named(&field.name.name).is_some() {
+            let name = &field.name.name;
+            let said = format!("`{name}` is left out: `{}` has no such parameter", base.name());
+            context.note(Diagnostic::warning(Code::W0804, field.name.span, said));
+            continue;
+        }
         let known = Parameter::of_kind(base).map(Parameter::name).chain(fields_of(base).iter().copied());
         let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
         context.note(error);

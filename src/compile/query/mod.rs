@@ -471,13 +471,14 @@ impl<'a> Compiler<'a> {
         };
         let described: Vec<_> = (0..self.sites.len()).map(named).collect();
         let mut worlds = Vec::with_capacity(self.sites.len());
-        let (mut title, mut tracks) = (String::new(), Vec::new());
+        let (mut title, mut tracks, mut people) = (String::new(), Vec::new(), BTreeSet::new());
         let sources: Arc<[Source]> = self.input.sources.into();
         for (site, settings) in self.sites.into_iter().zip(described) {
             let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
             let mut context = site.context;
             tracks = std::mem::take(&mut context.tracks.velocities);
+            people.append(&mut context.roster.presets);
             let written = written::written(&context, self.input.scenario);
             let kinds = kinds::bodies(&mut context);
             worlds.push(World {
@@ -494,7 +495,7 @@ impl<'a> Compiler<'a> {
                 origins: context.origins,
             });
         }
-        (Some(Study { title, tracks, worlds, base: self.base, queries: self.queries }), diagnostics)
+        (Some(Study { title, tracks, people, worlds, base: self.base, queries: self.queries }), diagnostics)
     }
 }
 

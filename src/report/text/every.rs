@@ -6,9 +6,9 @@
 //! ```
 
 use super::columns::Cell;
-use super::rows::{printed, table};
+use super::rows::{line, printed, table};
 use crate::engine::outcome::{Every, QueryResult, UnderOne, Verdict};
-use crate::report::number::{counted, plain};
+use crate::report::number::{brief, counted};
 use crate::report::palette::{Paint, Palette};
 
 /// Writes the rows; nothing for a query without `under every`.
@@ -31,6 +31,32 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     };
     let rows: Vec<_> = every.parts.iter().enumerate().map(row).collect();
     table(text, &rows, palette);
+    let said = whole(result, every);
+    if !said.is_empty() {
+        line(text, &said);
+    }
+}
+
+/// How many values agree: `satisfied under 2 of 3`; for a choice how often it is the best, and what it loses.
+fn whole(result: &QueryResult, every: &Every) -> String {
+    let all = every.parts.len();
+    let Some(choice) = result.rank.as_ref().and_then(|ranking| ranking.choice.as_ref()) else {
+        let satisfied = every.parts.iter().filter(|part| part.verdict == Some(Verdict::Satisfied)).count();
+        return if result.verdict.is_some() {
+            format!("satisfied under {satisfied} of {all}")
+        } else {
+            String::new()
+        };
+    };
+    let best = || every.parts.iter().filter_map(|part| Some((part, part.best.as_ref()?)));
+    let lost = best().map(|(part, (_, worth))| worth - part.figure.estimate).fold(0.0, f64::max);
+    match best().filter(|(_, (option, _))| option == choice).count() {
+        count if count == all => "the choice survives: it is best under each value".to_owned(),
+        count => {
+            let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
+            format!("best under {count} of {all}; it loses {}{unit} at most, by the estimates", brief(lost))
+        }
+    }
 }
 
 /// The rows as lines of text.
@@ -40,7 +66,8 @@ pub(in crate::report) fn lines(result: &QueryResult) -> Vec<String> {
         let [value, estimate, interval, trials, remark] = cells(result, every, part);
         format!("{value}: {estimate} {interval}, {trials}, {remark}")
     };
-    every.parts.iter().enumerate().map(line).collect()
+    let lines = every.parts.iter().enumerate().map(line);
+    lines.chain(Some(whole(result, every)).filter(|said| !said.is_empty())).collect()
 }
 
 fn cells(result: &QueryResult, every: &Every, (at, part): (usize, &UnderOne)) -> [String; 5] {
@@ -49,7 +76,7 @@ fn cells(result: &QueryResult, every: &Every, (at, part): (usize, &UnderOne)) ->
     let mut remark = match (&part.verdict, &part.best) {
         (Some(verdict), _) => verdict.name().to_owned(),
         (None, Some((best, _))) if Some(best) == choice => "best here".to_owned(),
-        (None, Some((best, worth))) => format!("best here: {best}, {}", plain(*worth)),
+        (None, Some((best, worth))) => format!("best here: {best}, {}", brief(*worth)),
         (None, None) => "nothing was sampled".to_owned(),
     };
     if at == every.least && every.parts.len() > 1 {

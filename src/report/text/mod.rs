@@ -20,6 +20,9 @@ pub fn render(run: &CallResult, palette: Palette) -> String {
     let mut text = String::new();
     if !run.scenario.is_empty() {
         let _ = writeln!(text, "{}", palette.paint(Paint::Strong, &run.scenario));
+        if !run.people.is_empty() {
+            let _ = writeln!(text, "people as {}", run.people.join(", "));
+        }
         for (name, velocity) in &run.tracks {
             let _ = writeln!(text, "velocities of the tracks `{name}`: {velocity}");
         }

@@ -280,6 +280,8 @@ pub struct KindDecl {
     pub base: Option<Ident>,
     /// `preset name`: of a preset, or of a parameter that chooses one.
     pub preset: Option<Ident>,
+    /// Whether the call chooses the preset: a field that it lacks is left out then, with a warning.
+    pub is_replaced: bool,
     /// Its fields.
     pub body: Vec<Field>,
 }

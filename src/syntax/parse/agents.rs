@@ -15,7 +15,7 @@ impl Builder<'_> {
             Some(preset) => Some(self.ident(&Parts::of(preset).part(Rule::name)?)),
             None => None,
         };
-        Some(KindDecl { name, base, preset, body: self.body(parts) })
+        Some(KindDecl { name, base, preset, is_replaced: false, body: self.body(parts) })
     }
 
     pub(super) fn agents(&mut self, pair: Pair<'_>) -> Option<AgentsDecl> {

@@ -179,10 +179,8 @@ impl Builder<'_> {
                 }
                 Rule::every => {
                     let name = self.ident(&parts.part(Rule::ident)?);
-                    let values = match parts.part(Rule::value_list) {
-                        Some(list) => Some(Parts::of(list).map(|value| self.expr(value)).collect()),
-                        None => None,
-                    };
+                    let list = parts.part(Rule::value_list);
+                    let values = list.map(|list| Parts::of(list).map(|value| self.expr(value)).collect());
                     clauses.every.replace(Every { name, values, span }).is_some()
                 }
                 _ => {
