@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 28] = [
+const PAIRS: [(&str, &str); 29] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -32,6 +32,7 @@ const PAIRS: [(&str, &str); 28] = [
     pair!("hotel-any"),
     pair!("hotel-groups"),
     pair!("hotel-laws"),
+    pair!("hotel-people"),
     pair!("leader"),
     pair!("overflow"),
     pair!("queue"),
