@@ -4,8 +4,9 @@
 //! streams, no walls), dense200 (four persons a square metre in a box); walls-corridor20 and walls-open2000 are
 //! the same scenes with 5 000 pieces of wall beside them.
 //!
-//! `cargo bench --bench kernel -- [scene ...] [base|avx2|best] [lanes|cells] [own-b]`: best of several, each
-//! from the start. `own-b`: every agent has its own range of the social force too.
+//! `cargo bench --bench kernel -- [scene ...] [base|avx2|best] [lanes|cells] [own-b|free|cfs]`: best of several, each
+//! from the start. `own-b`: every agent has its own range of the social force too; `free`: without contact; `cfs`: the
+//! collision-free speed model.
 
 use fearless_simd::Level;
 use smc::base::decimal::Decimal;
@@ -145,14 +146,44 @@ fn uniform(low: f64, high: f64) -> Law {
     Law::Random { family: Family::Uniform { low, high }, low, high }
 }
 
-fn scenario(scene: &Scene, own_b: bool) -> Scenario {
-    let body = Arc::new(Body::new(Kind::Sfm, |parameter| match parameter {
+/// How the people of a scene walk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Walk {
+    /// Social forces with contact.
+    Contact,
+    /// The same, and each agent has its own range.
+    OwnRange,
+    /// Social forces without contact.
+    Free,
+    /// Collision-free speeds.
+    Speeds,
+}
+
+impl Walk {
+    fn named(word: &str) -> Option<Self> {
+        Some(match word {
+            "contact" => Self::Contact,
+            "own-b" => Self::OwnRange,
+            "free" => Self::Free,
+            "cfs" => Self::Speeds,
+            _ => return None,
+        })
+    }
+}
+
+fn scenario(scene: &Scene, walk: Walk) -> Scenario {
+    let kind = if walk == Walk::Speeds { Kind::Cfs } else { Kind::Sfm };
+    let body = Arc::new(Body::new(kind, |parameter| match parameter {
+        Parameter::A | Parameter::A2 | Parameter::K1 | Parameter::K2 if walk == Walk::Speeds => {
+            Law::Constant(0.0)
+        }
+        Parameter::K1 | Parameter::K2 if walk == Walk::Free => Law::Constant(0.0),
         Parameter::Mass => uniform(60.0, 90.0),
         Parameter::Radius => uniform(0.2, 0.28),
         Parameter::Speed => uniform(1.1, 1.6),
         Parameter::Tau => uniform(0.4, 0.6),
         Parameter::A => uniform(1800.0, 2200.0),
-        Parameter::B if own_b => uniform(0.07, 0.09),
+        Parameter::B if walk == Walk::OwnRange => uniform(0.07, 0.09),
         Parameter::B => Law::Constant(0.08),
         Parameter::Lambda => uniform(0.2, 0.4),
         Parameter::K1 => Law::Constant(1.2e5),
@@ -191,7 +222,7 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
     }
 }
 
-fn loaded(scene: &Scene, layout: Layout, own_b: bool) -> State {
+fn loaded(scene: &Scene, layout: Layout, walk: Walk) -> State {
     let mut state = State::new(layout, scene.walkers.len());
     let width = state.width();
     let mut rng = SplitMix64(77);
@@ -211,14 +242,25 @@ fn loaded(scene: &Scene, layout: Layout, own_b: bool) -> State {
             state.driving.ey[b].0[l] = 0.0;
             state.driving.speed[b].0[l] = walker.speed;
             state.bodies[Parameter::Speed][b].0[l] = walker.speed;
+            if walk == Walk::Speeds {
+                for parameter in Parameter::of_kind(Kind::Cfs) {
+                    state.bodies[parameter][b].0[l] = parameter.description().default.unwrap_or(0.0);
+                }
+                state.bodies[Parameter::Speed][b].0[l] = walker.speed;
+                state.bodies[Parameter::Radius][b].0[l] = between(0.2, 0.28);
+                state.bodies[Parameter::Noise][b].0[l] = 0.08;
+                continue;
+            }
             state.bodies[Parameter::Mass][b].0[l] = between(60.0, 90.0);
             state.bodies[Parameter::Radius][b].0[l] = between(0.2, 0.28);
             state.bodies[Parameter::Tau][b].0[l] = between(0.4, 0.6);
             state.bodies[Parameter::A][b].0[l] = between(1800.0, 2200.0);
-            state.bodies[Parameter::B][b].0[l] = if own_b { between(0.07, 0.09) } else { 0.08 };
+            state.bodies[Parameter::B][b].0[l] =
+                if walk == Walk::OwnRange { between(0.07, 0.09) } else { 0.08 };
             state.bodies[Parameter::Lambda][b].0[l] = between(0.2, 0.4);
-            state.bodies[Parameter::K1][b].0[l] = 1.2e5;
-            state.bodies[Parameter::K2][b].0[l] = 2.4e5;
+            let touched = if walk == Walk::Free { 0.0 } else { 1.0 };
+            state.bodies[Parameter::K1][b].0[l] = touched * 1.2e5;
+            state.bodies[Parameter::K2][b].0[l] = touched * 2.4e5;
             state.bodies[Parameter::Noise][b].0[l] = 0.08;
         }
     }
@@ -266,9 +308,9 @@ impl Stopwatch {
     }
 }
 
-fn measure(scene: &Scene, layout: Layout, own_b: bool, level: Level) -> (f64, State) {
-    let program = Program::new(Arc::new(scenario(scene, own_b)));
-    let start = loaded(scene, layout, own_b);
+fn measure(scene: &Scene, layout: Layout, walk: Walk, level: Level) -> (f64, State) {
+    let program = Program::new(Arc::new(scenario(scene, walk)));
+    let start = loaded(scene, layout, walk);
     let mut best = Duration::MAX;
     let mut state = start.clone();
     let agent_steps = scene.walkers.len() * state.width() * scene.steps;
@@ -313,8 +355,12 @@ fn main() {
     if layouts.is_empty() {
         layouts = vec![Layout::Trials, Layout::Agents];
     }
-    let own_bs: &[bool] = if words.iter().any(|word| word == "own-b") { &[true] } else { &[false] };
-    let is_option = |word: &str| level(word).is_some() || layout_of(word).is_some() || word == "own-b";
+    let mut walks: Vec<Walk> = words.iter().filter_map(|word| Walk::named(word)).collect();
+    if walks.is_empty() {
+        walks.push(Walk::Contact);
+    }
+    let is_option =
+        |word: &str| level(word).is_some() || layout_of(word).is_some() || Walk::named(word).is_some();
     let wanted: Vec<&String> = words.iter().filter(|word| !is_option(word)).collect();
     let scenes = [
         corridor20(),
@@ -332,23 +378,23 @@ fn main() {
         if !wanted.is_empty() && !wanted.iter().any(|name| scene.name.starts_with(name.as_str())) {
             continue;
         }
-        for &own_b in own_bs {
+        for &walk in &walks {
             for &layout in &layouts {
                 if layout == Layout::Trials && scene.walkers.len() > 500 {
                     continue;
                 }
                 for &level in &levels {
-                    let (rate, state) = measure(&scene, layout, own_b, level);
+                    let (rate, state) = measure(&scene, layout, walk, level);
                     let checksum: f64 = state.motion.x.iter().flat_map(|lanes| lanes.0).sum();
                     let name = format!("{level:?}");
                     let name = name.split('(').next().unwrap_or_default();
                     let _ = writeln!(
                         out,
-                        "{:<11} {:<7} {:<9} own B {:<5} {rate:7.1} M agent-steps/s  diverged {}  checksum {checksum}",
+                        "{:<11} {:<7} {:<9} {:<8} {rate:7.1} M agent-steps/s  diverged {}  checksum {checksum}",
                         scene.name,
                         format!("{layout:?}"),
                         name,
-                        own_b,
+                        format!("{walk:?}"),
                         state.diverged.iter().count(),
                     );
                 }

@@ -4,14 +4,15 @@
 //! 2/sqrt(n A/(m B)) let it swing farther from one to the next (the bound of the Störmer-Verlet method). Where bodies
 //! collide at their driving speed, the n/2 in front overlap by a depth d, at which the force falls with A/B exp(d/B) a metre.
 //! Compression and friction are advanced in sub-steps and set no bound, and driving is solved exactly: a fifth of tau
-//! is where the speed of dense streams begins to depend on the step. Of a law counts the value that one draw in 740 goes
-//! beyond, as 3 standard deviations of a normal one.
+//! is where the speed of dense streams begins to depend on the step. Without forces the gap to those ahead takes the time gap
+//! to relax, so that a fifth of it is the bound likewise. Of a law counts the value that one draw in 740 goes beyond, as 3
+//! standard deviations of a normal one.
 
 use crate::base::decimal::Decimal;
 use crate::base::math::{at_least, at_most, exp};
 use crate::base::tick::Clock;
 use crate::compile::context::{Context, symbols::Meaning};
-use crate::model::{Agent, AgentId, Parameter};
+use crate::model::{Agent, AgentId, Kind, Parameter};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -29,6 +30,8 @@ const PARTS: [i64; 5] = [1, 2, 4, 5, 8];
 struct Longest {
     force: f64,
     relaxation: f64,
+    /// The time of which that is a fifth.
+    time: Parameter,
     /// How deep bodies overlap that collide, m, if that is what sets the bound; else 0.
     depth: f64,
 }
@@ -59,10 +62,12 @@ impl Longest {
         let (at_rest, colliding) =
             (neighbours as f64 * slope(0.0), neighbours.div_ceil(2) as f64 * slope(depth));
         let rate = most(Parameter::Attention) * at_least(at_rest, colliding) / mass;
+        let time = if agent.body.kind == Kind::Cfs { Parameter::TimeGap } else { Parameter::Tau };
         let slower = agent.particle.map_or(1.0, |particle| particle.tau_factor);
         Self {
             force: 2.0 / at_least(rate, 0.0).sqrt(),
-            relaxation: slower * least(Parameter::Tau) / 5.0,
+            relaxation: slower * least(time) / 5.0,
+            time,
             depth: if colliding > at_rest { depth } else { 0.0 },
         }
     }
@@ -115,7 +120,12 @@ pub(crate) fn check_step(context: &mut Context<'_>, file: &ScenarioFile, agents:
     let text = format!("a step of {step} s is too long for {}", names.join(" and "));
     let mut warning = Diagnostic::warning(Code::W0801, span, text);
     let reason = if strictest.force >= strictest.relaxation {
-        "the longest step for the driving force is a fifth of `tau`".to_owned()
+        match strictest.time {
+            Parameter::TimeGap => {
+                "the longest step for the gap to those ahead is a fifth of `time_gap`".to_owned()
+            }
+            _ => "the longest step for the driving force is a fifth of `tau`".to_owned(),
+        }
     } else if strictest.depth > 0.0 {
         format!(
             "the longest step for bodies that collide at their driving speed and overlap by {:.2} m is 2 / sqrt(n A exp({:.2} m / B) / (m B)) with n = {}",
