@@ -51,6 +51,14 @@ fn a_check_holds_where_it_holds_under_every_value() {
         );
         assert_eq!(found["settings"].as_object().unwrap().len(), 0);
     }
+    // A quantile is decided as a probability, which is small where the quantile is large.
+    let text = "check Q(0.1, c.x at end) >= 1.5 under every p in 0.05, 0.01\n";
+    let found = &results(text, &[])[0];
+    assert_eq!(
+        (&found["verdict"], &found["every"]["least"]),
+        (&"satisfied".into(), &"0.05".into()),
+        "{found:#}"
+    );
     let text = "check P(F (c.x == 1)) >= 0.5 under every p in 0.9, 0.5\n";
     let found = &results(text, &["--max-trials", "200"])[0];
     assert_eq!((&found["verdict"], &found["every"]["least"]), (&"undecided".into(), &"0.5".into()));

@@ -43,11 +43,9 @@ fn check(parts: &[(&Query, QueryResult)]) -> Option<QueryResult> {
         None if all(Verdict::Satisfied) => Verdict::Satisfied,
         None => Verdict::Undecided,
     };
-    // Of a quantile the figure is the probability of an event that may speak against it.
-    let good_is_large = parts[0].1.of.is_none() == *at_least || parts[0].1.of.is_some() && *at_least;
     let figure = |at: usize| {
         let estimate = parts[at].1.estimate.unwrap_or(f64::NAN);
-        if good_is_large { estimate } else { -estimate }
+        if *at_least { estimate } else { -estimate }
     };
     let rank = |at: usize| match verdict(at) {
         Verdict::Violated => 0,

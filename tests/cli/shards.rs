@@ -19,6 +19,8 @@ estimate E(robustness(near)) in -4 m .. 3 m within 0.3 m
 compare P(near) under density = 0.1 /m^2 with density = 0.4 /m^2 within 0.1
 rank moves of user by P(near) within 0.1
 rank moves of user by P(near) by okamoto(epsilon = 0.3, delta = 0.2)
+check P(near) >= 0.3 under every density in 0.1 /m^2, 0.4 /m^2
+rank moves of user by P(near) within 0.1 under every density in 0.1 /m^2, 0.4 /m^2
 ";
 
 /// One table, and a number of trials that is known.
