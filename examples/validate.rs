@@ -25,7 +25,7 @@ use std::fs;
 use std::path::Path;
 
 /// The preset that the scenarios name.
-const NAMED: &str = "preset smc1";
+const NAMED: &str = "sfm preset smc1";
 
 const TRIALS: u64 = 120;
 
