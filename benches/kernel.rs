@@ -174,9 +174,6 @@ impl Walk {
 fn scenario(scene: &Scene, walk: Walk) -> Scenario {
     let kind = if walk == Walk::Speeds { Kind::Cfs } else { Kind::Sfm };
     let body = Arc::new(Body::new(kind, |parameter| match parameter {
-        Parameter::A | Parameter::A2 | Parameter::K1 | Parameter::K2 if walk == Walk::Speeds => {
-            Law::Constant(0.0)
-        }
         Parameter::K1 | Parameter::K2 if walk == Walk::Free => Law::Constant(0.0),
         Parameter::Mass => uniform(60.0, 90.0),
         Parameter::Radius => uniform(0.2, 0.28),
@@ -246,6 +243,7 @@ fn loaded(scene: &Scene, layout: Layout, walk: Walk) -> State {
                 for parameter in Parameter::of_kind(Kind::Cfs) {
                     state.bodies[parameter][b].0[l] = parameter.description().default.unwrap_or(0.0);
                 }
+                state.bodies[Parameter::Mass][b].0[l] = 80.0;
                 state.bodies[Parameter::Speed][b].0[l] = walker.speed;
                 state.bodies[Parameter::Radius][b].0[l] = between(0.2, 0.28);
                 state.bodies[Parameter::Noise][b].0[l] = 0.08;
