@@ -40,6 +40,12 @@ impl Lanes {
         out
     }
 
+    /// Whether all numbers of two lists have the same bits.
+    pub fn are_same(one: &[Self], other: &[Self]) -> bool {
+        let bits = |lanes: &Self| lanes.0.map(f64::to_bits);
+        one.len() == other.len() && one.iter().zip(other).all(|(a, b)| bits(a) == bits(b))
+    }
+
     /// The lanes in which `f` holds of the two numbers.
     #[inline(always)]
     pub fn compare(self, other: Self, f: impl Fn(f64, f64) -> bool) -> Mask {

@@ -112,7 +112,7 @@ impl Answers<'_> {
         result.stopped_by = stop;
         result.replay = self.replay(query, MAX_TRIALS, counts.trials);
         result.elapsed_s = entry.seconds;
-        let measured = measured_words(query, measure, entry.tally.clipped);
+        let measured = words::measured(query, measure, entry.tally.clipped);
         let mut beside = match query.ask {
             Ask::Check { beside, .. } => beside,
             _ => 0.0,
@@ -368,7 +368,7 @@ impl Answers<'_> {
             settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
         };
         let labels = [label(&settings[0]), label(&settings[1])];
-        let name = measured_words(query, first, joined.clipped);
+        let name = words::measured(query, first, joined.clipped);
         if says_something(&query.ask, f64::NEG_INFINITY, (result.low, result.high)) {
             result.certifies = format!(
                 "{name} under {} less that under {} in {}, error at most {}",
@@ -425,7 +425,7 @@ impl Answers<'_> {
         let (own, prepared, column) = (settings(arm), setup.worlds[arm], options[arm].target.column);
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let listed = tables::ranked(&ranked, options, models, query.every.as_ref());
-        let score = measured_words(query, measure, joined.clipped);
+        let score = words::measured(query, measure, joined.clipped);
         if let Some(choice) = &listed.choice {
             if listed.gap < ranked.scale {
                 result.certifies = format!(
@@ -496,17 +496,4 @@ fn legal(ask: &Ask) -> (f64, f64) {
 fn says_something(ask: &Ask, least: f64, (low, high): (f64, f64)) -> bool {
     let (lowest, most) = legal(ask);
     low > lowest.max(least) || high < most
-}
-
-/// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation
-/// is known of the clipped metric alone, and is said of that.
-fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
-    match &measure.kind {
-        MeasureKind::Probability => words::decided(&query.said),
-        MeasureKind::Quantile { .. } => query.said.measure.clone(),
-        MeasureKind::Expectation { range, dimension } => {
-            let said = &query.said.measure;
-            if clipped == 0 { said.clone() } else { words::clipped(said, *range, &dimension.to_string()) }
-        }
-    }
 }

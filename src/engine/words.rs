@@ -1,6 +1,6 @@
 //! Certified statements in words.
 
-use crate::compile::study::Said;
+use crate::compile::study::{Measure, MeasureKind, Query, Said};
 use crate::stats::{Claim, Coverage, Statement};
 
 /// Largest number that is written with an exponent, for the many zeros it would begin with.
@@ -205,6 +205,19 @@ pub(super) fn interval(coverage: Coverage, error: f64) -> String {
         Coverage::TimeUniform => "time-uniform",
     };
     format!("{kind}, {}", level(error))
+}
+
+/// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation
+/// is known of the clipped metric alone, and is said of that.
+pub(super) fn measured(query: &Query, measure: &Measure, cut: u64) -> String {
+    match &measure.kind {
+        MeasureKind::Probability => decided(&query.said),
+        MeasureKind::Quantile { .. } => query.said.measure.clone(),
+        MeasureKind::Expectation { range, dimension } => {
+            let said = &query.said.measure;
+            if cut == 0 { said.clone() } else { clipped(said, *range, &dimension.to_string()) }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -41,14 +41,12 @@ use super::speed;
 use super::start;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
-use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math::exp;
 use crate::base::random::TrialKey;
+use crate::model::TOP_SPEED;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
-
-use crate::model::{Periods, TOP_SPEED};
 
 /// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
 /// one after `refresh` changes no bit.
@@ -110,8 +108,8 @@ impl Scratch {
     pub fn close(&self, state: &State) -> Option<Close<'_>> {
         let same = state.layout == Layout::Agents
             && self.seen == Some((state.keys[0], state.ticks[0]))
-            && same_bits(&self.seen_x, &state.motion.x)
-            && same_bits(&self.seen_y, &state.motion.y);
+            && Lanes::are_same(&self.seen_x, &state.motion.x)
+            && Lanes::are_same(&self.seen_y, &state.motion.y);
         if same { self.cells.close(self.contacts.pairs()) } else { None }
     }
 }
@@ -135,9 +133,7 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
         find_forces(simd, program, state, scratch);
         let slots = state.layout.slots_of(lanes);
         keep_forces(simd, state, scratch, slots);
-        if program.forces.speeds.is_some() {
-            speed::set(simd, program, state, scratch, slots);
-        }
+        speed::set(simd, program, state, scratch, slots);
     });
 }
 
@@ -153,7 +149,7 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     }
     dispatch!(scratch.level, simd => move_on(simd, program, state, scratch));
     if !program.forces.periods.are_none() {
-        wrap(&program.forces.periods, state, &scratch.moving);
+        state.wrap(&program.forces.periods, &scratch.moving);
     }
     for lane in state.occupied.iter() {
         state.ticks[lane] += 1;
@@ -222,29 +218,12 @@ fn keep_forces<S: Simd>(simd: S, state: &mut State, scratch: &Scratch, lanes: Ma
     }
 }
 
-/// Brings those who have left the scene of a closed plane back into it, with the places where they rest.
-fn wrap(periods: &Periods, state: &mut State, moving: &[Mask]) {
-    let (motion, driving) = (&mut state.motion, &mut state.driving);
-    for (block, moving) in moving.iter().enumerate() {
-        for lane in moving.iter() {
-            let p = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
-            let image = periods.wrap(p);
-            (motion.x[block].0[lane], motion.y[block].0[lane]) = (image.x, image.y);
-            driving.rest_x[block].0[lane] += image.x - p.x;
-            driving.rest_y[block].0[lane] += image.y - p.y;
-        }
-    }
-}
-
-fn same_bits(a: &[Lanes], b: &[Lanes]) -> bool {
-    let bits = |lanes: &Lanes| lanes.0.map(f64::to_bits);
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
-}
-
 /// Kick, drift, driving and noise, drift.
 #[inline(always)]
 fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut Scratch) {
-    if !(same_bits(&scratch.seen_x, &state.motion.x) && same_bits(&scratch.seen_y, &state.motion.y)) {
+    if !(Lanes::are_same(&scratch.seen_x, &state.motion.x)
+        && Lanes::are_same(&scratch.seen_y, &state.motion.y))
+    {
         // This scratch last saw another batch.
         find_forces(simd, program, state, scratch);
     }
@@ -492,9 +471,7 @@ fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut 
     find_forces(simd, program, state, scratch);
     let occupied = state.layout.slots_of(state.occupied);
     keep_forces(simd, state, scratch, occupied);
-    if program.forces.speeds.is_some() {
-        speed::set(simd, program, state, scratch, occupied);
-    }
+    speed::set(simd, program, state, scratch, occupied);
     let mut diverged = Mask::NONE;
     for block in 0..state.motion.x.len() {
         // Someone who has just entered has not made this step.

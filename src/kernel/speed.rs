@@ -30,6 +30,9 @@ pub(super) fn set<S: Simd>(
     scratch: &mut Scratch,
     lanes: Mask,
 ) {
+    if program.forces.speeds.is_none() {
+        return;
+    }
     for block in 0..state.motion.x.len() {
         for part in parts(simd) {
             turn(part, state, block, lanes);

@@ -1,21 +1,13 @@
 //! The worlds that queries set up with `under`: their values, and these in words.
 
-use crate::compile::context::{
-    Context, Locals, Lowered, Reported,
-    number::Number,
-    symbols::{Param, ScopeId},
-};
+use crate::compile::context::{Locals, Lowered, Reported, number::Number, symbols::ScopeId};
 use crate::compile::query::{
     compiler::{Compiler, Site},
     settings,
 };
-use crate::syntax::ast::property::Every;
-use crate::syntax::ast::{Binding, Expr, ExprKind, Query, QueryKind, Ranked, Values};
+use crate::syntax::ast::Binding;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
-
-/// Most values of `under every`.
-const MOST_VALUES: usize = 20;
 
 /// The world in which some parameters take other values, and these in words.
 pub(crate) fn under(
@@ -90,80 +82,4 @@ pub(crate) fn check_ranges(
     }
     context.sink.is_astray = was_astray || is_outside;
     result
-}
-
-/// A world of a query, and what the query sets in it, in words.
-type Asked = (usize, Vec<(String, String)>);
-
-/// The worlds of a query: one, or one for each value of `under every`.
-pub(crate) fn worlds(
-    compiler: &mut Compiler<'_>,
-    query: &Query,
-    scope: ScopeId,
-    base: usize,
-    point: &BTreeMap<String, Number>,
-) -> Lowered<Vec<Asked>> {
-    let bindings = &query.clauses.under;
-    let Some(every) = &query.clauses.every else {
-        return under(compiler, bindings, scope, base, point).map(|world| vec![world]);
-    };
-    let context = &mut compiler.sites[base].context;
-    let values = values_of(context, query, every)?;
-    let each = values.into_iter().map(|value| {
-        let own = Binding { name: every.name.clone(), value };
-        let all: Vec<Binding> = bindings.iter().cloned().chain([own]).collect();
-        under(compiler, &all, scope, base, point)
-    });
-    let each: Vec<_> = each.collect();
-    each.into_iter().collect()
-}
-
-/// The values of `under every`: those that are written, or those from which the parameter chooses.
-fn values_of(context: &mut Context<'_>, query: &Query, every: &Every) -> Lowered<Vec<Expr>> {
-    let name = &every.name.name;
-    if !matches!(query.kind, QueryKind::Check { .. } | QueryKind::Rank { .. }) {
-        return context.report(error!(E0608, every.span, "`under every` belongs to `check` and `rank`";
-            hint: "for the values of a query set `{name}` by `--set`, or ask one query for each"));
-    }
-    if let (QueryKind::Rank { .. }, Some(method)) = (&query.kind, &query.clauses.by) {
-        return context
-            .report(error!(E0608, method.span, "a ranking under every value has its own procedure";
-            hint: "leave `by {}` out", method.name.name));
-    }
-    if let QueryKind::Rank { of: Ranked::Values(list), .. } = &query.kind
-        && list.iter().any(|(ranked, _)| ranked.name == *name)
-    {
-        return context
-            .report(error!(E0210, every.name.span, "`{name}` is set twice"; hint: "rank another parameter"));
-    }
-    let Param { choices, .. } = settings::param(context, name, every.name.span)?;
-    let values = match &every.values {
-        Some(values) => values.clone(),
-        None if choices.is_empty() => {
-            return context.report(error!(E0608, every.name.span, "`{name}` has no list of values";
-                hint: "write the values: `under every {name} in …, …`"));
-        }
-        // Errors of a value are those of the clause.
-        None => choices
-            .iter()
-            .map(|choice| Expr { kind: ExprKind::Name(choice.name.clone()), span: every.name.span })
-            .collect(),
-    };
-    let error = match values.len() {
-        0 | 1 => error!(E0608, every.span, "`under every` needs two values at least";
-            hint: "for one value write `under {name} = …`"),
-        n if n > MOST_VALUES => {
-            error!(E0608, every.span, "`under every` takes at most {MOST_VALUES} values (got {n})";
-                hint: "leave some out")
-        }
-        _ => {
-            let values = Values::List(values.clone());
-            settings::values(context, (name, every.name.span), &values, MOST_VALUES, &Locals::of(0))?;
-            return Ok(match values {
-                Values::List(list) => list,
-                Values::Range { .. } => Vec::new(),
-            });
-        }
-    };
-    context.report(error)
 }

@@ -6,6 +6,7 @@ pub(crate) mod bounds;
 pub(crate) mod checks;
 pub(crate) mod clauses;
 pub(crate) mod compiler;
+pub(crate) mod every;
 pub(crate) mod families;
 pub(crate) mod findings;
 pub(crate) mod measures;
@@ -23,7 +24,7 @@ use crate::compile::context::{
 use crate::compile::lower::{call, name, traffic};
 use crate::compile::people::kinds;
 use crate::compile::query::families::Allowance;
-use crate::compile::study::{Ask, Every, Query, Said, Study, World};
+use crate::compile::study::{Ask, Query, Said, Study, World};
 use crate::compile::written;
 use crate::stats::spec::Make;
 use crate::syntax::ast::{self, Expr, PropertyFile, PropertyItem, QueryKind};
@@ -215,12 +216,12 @@ impl<'a> Compiler<'a> {
         settings: &[(String, String)],
         family: Option<f64>,
     ) -> Lowered<()> {
-        match bindings::worlds(self, query, scope, base, point) {
+        match every::worlds(self, query, scope, base, point) {
             Ok(worlds) => {
                 for (world, _) in &worlds {
                     starts::note_asked(self, query, *world);
                 }
-                self.ask_all(query, scope, worlds, settings, family)
+                every::ask(self, query, scope, worlds, settings, family)
             }
             Err(Reported) => {
                 // The world of the call stands in, so that this hides nothing else that is surely wrong.
@@ -248,57 +249,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// A query in each of its worlds: one, or those of `under every`.
-    fn ask_all(
-        &mut self,
-        query: &'a ast::Query,
-        scope: ScopeId,
-        worlds: Vec<(usize, Vec<(String, String)>)>,
-        settings: &[(String, String)],
-        family: Option<f64>,
-    ) -> Lowered<()> {
-        let Some(every) = &query.clauses.every else {
-            return worlds
-                .into_iter()
-                .try_for_each(|world| self.ask(query, scope, world, settings, (family, 1)));
-        };
-        let (index, claims) = (self.next_index, worlds.len());
-        let value = |(_, own): &(usize, Vec<(String, String)>)| {
-            own.iter().find(|(name, _)| *name == every.name.name).map(|(_, value)| value.clone())
-        };
-        let values: Vec<String> = worlds.iter().filter_map(value).collect();
-        let is_ranking = matches!(query.kind, QueryKind::Rank { .. });
-        // A ranking has one certificate, whose error its options share already.
-        let claims = if is_ranking { 1 } else { claims };
-        // A family counts the query as one claim.
-        let family = family.map(|share| share / claims as f64);
-        // Each part is asked, whatever another one asks.
-        let known = std::mem::take(&mut self.queries);
-        let (mut parts, mut asked) = (Vec::new(), Ok(()));
-        for world in worlds {
-            self.next_index = index;
-            asked = self.ask(query, scope, world, settings, (family, claims)).and(asked);
-            parts.append(&mut self.queries);
-        }
-        self.queries = known;
-        asked?;
-        for (place, part) in parts.iter_mut().enumerate() {
-            part.every = Some(Every { name: every.name.name.clone(), values: values.clone(), place });
-        }
-        if is_ranking {
-            parts = Vec::from_iter(rankings::joined(parts));
-        }
-        let is_known = |part: &Query| {
-            self.queries.iter().any(|known| known.index == part.index && known.ask == part.ask)
-        };
-        if !parts.iter().all(is_known) {
-            self.queries.extend(parts);
-        }
-        Ok(())
-    }
-
     /// A query in a world, with what it sets itself.
-    fn ask(
+    pub(crate) fn ask(
         &mut self,
         query: &'a ast::Query,
         scope: ScopeId,
@@ -307,112 +259,86 @@ impl<'a> Compiler<'a> {
         (family, claims): (Option<f64>, usize),
     ) -> Lowered<()> {
         let clauses = &query.clauses;
-        let locals = Locals::of(scope);
         let text = self.sites[site].context.text(query.span);
         // What a query sets itself takes the place of what a sweep sets.
         let swept = settings.iter().filter(|(name, _)| !query.sets(name));
         let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
-        match &query.kind {
-            QueryKind::Check { measure, relation, threshold } => {
-                let ask = checks::check(
-                    self,
-                    site,
-                    measure,
-                    *relation,
-                    threshold,
-                    clauses,
-                    (family, claims),
-                    scope,
-                );
-                let (ask, unbounded) = ask?;
-                let said = titles::said(&self.sites[site].context, measure, Some((*relation, threshold)));
-                self.keep_query(
-                    query.span,
-                    (text, said),
-                    settings,
-                    property_name(measure),
-                    ask,
-                    unbounded,
-                    site,
-                );
-            }
+        let (measure, claim, (ask, unbounded, site)) = match &query.kind {
             QueryKind::Estimate(measures) => {
-                let allowance = Allowance { family, claims: families::claims(measures, clauses) };
-                let mut failed = false;
-                for measure in measures {
-                    // What is wrong with the procedure is said beside what is wrong with the measure.
-                    let (measured, sketch) = self.measured(site, measure, scope);
-                    let context = &mut self.sites[site].context;
-                    let estimator = methods::estimator(context, clauses, sketch, allowance, &locals);
-                    let (Ok((measured, unbounded)), Ok(estimator)) = (measured, estimator) else {
-                        failed = true;
-                        continue;
-                    };
-                    let mut level = None;
-                    if matches!(estimator.spec.make, Make::Splitting { .. }) {
-                        // How far a path has come is the robustness of its formula.
-                        let Ok(found) = measures::level(context, measure, scope) else {
-                            failed = true;
-                            continue;
-                        };
-                        level = Some(self.column(site, found));
-                    }
-                    let context = &self.sites[site].context;
-                    let single = match &measure.kind {
-                        _ if measures.len() == 1 => text.clone(),
-                        ast::MeasureKind::Quantile(level) => format!(
-                            "estimate Q({}, {})",
-                            context.text(level.span),
-                            context.text(measure.body.span)
-                        ),
-                        _ => format!("estimate {}", context.text(measure.span)),
-                    };
-                    let ask = Ask::Estimate { measure: measured, estimator, level };
-                    let said = titles::said(context, measure, None);
-                    self.keep_query(
-                        query.span,
-                        (single, said),
-                        settings.clone(),
-                        property_name(measure),
-                        ask,
-                        unbounded,
-                        site,
-                    );
-                }
-                if failed {
-                    return Err(Reported);
-                }
+                return self.ask_estimates(query, measures, scope, (site, &settings), family);
+            }
+            QueryKind::Check { measure, relation, threshold } => {
+                let share = (family, claims);
+                let asked = checks::check(self, site, measure, *relation, threshold, clauses, share, scope);
+                let (ask, unbounded) = asked?;
+                (measure, Some((*relation, threshold)), (ask, unbounded, site))
             }
             QueryKind::Compare { measure, first, second } => {
                 let sides = [first.as_slice(), second];
-                let (ask, unbounded, one) =
-                    checks::compare(self, site, measure, sides, clauses, family, scope)?;
-                let said = titles::said(&self.sites[one].context, measure, None);
-                self.keep_query(
-                    query.span,
-                    (text, said),
-                    settings,
-                    property_name(measure),
-                    ask,
-                    unbounded,
-                    one,
-                );
+                (measure, None, checks::compare(self, site, measure, sides, clauses, family, scope)?)
             }
             QueryKind::Rank { of, measure } => {
-                let (ask, unbounded, one) = rankings::rank(self, site, of, measure, clauses, family, scope)?;
-                let said = titles::said(&self.sites[one].context, measure, None);
-                self.keep_query(
-                    query.span,
-                    (text, said),
-                    settings,
-                    property_name(measure),
-                    ask,
-                    unbounded,
-                    one,
-                );
+                (measure, None, rankings::rank(self, site, of, measure, clauses, family, scope)?)
             }
-        }
+        };
+        let said = titles::said(&self.sites[site].context, measure, claim);
+        let name = property_name(measure);
+        self.keep_query(query.span, (text, said), settings, name, ask, unbounded, site);
         Ok(())
+    }
+
+    /// The measures of an estimate, each a query of its own.
+    fn ask_estimates(
+        &mut self,
+        query: &'a ast::Query,
+        measures: &'a [ast::Measure],
+        scope: ScopeId,
+        (site, settings): (usize, &[(String, String)]),
+        family: Option<f64>,
+    ) -> Lowered<()> {
+        let (clauses, locals) = (&query.clauses, Locals::of(scope));
+        let text = self.sites[site].context.text(query.span);
+        let allowance = Allowance { family, claims: families::claims(measures, clauses) };
+        let mut failed = false;
+        for measure in measures {
+            // What is wrong with the procedure is said beside what is wrong with the measure.
+            let (measured, sketch) = self.measured(site, measure, scope);
+            let context = &mut self.sites[site].context;
+            let estimator = methods::estimator(context, clauses, sketch, allowance, &locals);
+            let (Ok((measured, unbounded)), Ok(estimator)) = (measured, estimator) else {
+                failed = true;
+                continue;
+            };
+            let mut level = None;
+            if matches!(estimator.spec.make, Make::Splitting { .. }) {
+                // How far a path has come is the robustness of its formula.
+                let Ok(found) = measures::level(context, measure, scope) else {
+                    failed = true;
+                    continue;
+                };
+                level = Some(self.column(site, found));
+            }
+            let context = &self.sites[site].context;
+            let single = match &measure.kind {
+                _ if measures.len() == 1 => text.clone(),
+                ast::MeasureKind::Quantile(level) => {
+                    format!("estimate Q({}, {})", context.text(level.span), context.text(measure.body.span))
+                }
+                _ => format!("estimate {}", context.text(measure.span)),
+            };
+            let ask = Ask::Estimate { measure: measured, estimator, level };
+            let said = titles::said(context, measure, None);
+            self.keep_query(
+                query.span,
+                (single, said),
+                settings.to_vec(),
+                property_name(measure),
+                ask,
+                unbounded,
+                site,
+            );
+        }
+        if failed { Err(Reported) } else { Ok(()) }
     }
 
     fn keep_query(

@@ -17,7 +17,7 @@ pub use super::layout::{Layout, Slot};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
-use crate::model::{AgentId, Scenario, Source};
+use crate::model::{AgentId, Periods, Scenario, Source};
 pub use bodies::Bodies;
 pub use clocks::Clocks;
 pub use passages::Passages;
@@ -114,6 +114,20 @@ impl State {
     pub(super) fn forget_noise(&mut self, Slot { block, lane }: Slot) {
         self.driving.go_x[block].0[lane] = self.motion.vx[block].0[lane];
         self.driving.go_y[block].0[lane] = self.motion.vy[block].0[lane];
+    }
+
+    /// Brings those who have left the scene of a closed plane back into it, with the places where they rest.
+    pub(super) fn wrap(&mut self, periods: &Periods, moving: &[Mask]) {
+        let (motion, driving) = (&mut self.motion, &mut self.driving);
+        for (block, moving) in moving.iter().enumerate() {
+            for lane in moving.iter() {
+                let p = Vec2::new(motion.x[block].0[lane], motion.y[block].0[lane]);
+                let image = periods.wrap(p);
+                (motion.x[block].0[lane], motion.y[block].0[lane]) = (image.x, image.y);
+                driving.rest_x[block].0[lane] += image.x - p.x;
+                driving.rest_y[block].0[lane] += image.y - p.y;
+            }
+        }
     }
 
     /// Where agent `agent` of the trial in lane `lane` is kept.
