@@ -102,7 +102,13 @@ pub(super) fn of_ranking(
         let columns = || (model..options.len()).step_by(models);
         let known = |column: &usize| ranked.tallies[*column].counts.trials > 0;
         let value = |column: &usize| ranked.values[*column].0;
-        let best = columns().filter(known).max_by(|a, b| value(a).total_cmp(&value(b)).then(b.cmp(a)));
+        // By its lower end: of two that did well the one that is known better, so that luck in a few trials is not the best.
+        let low = |column: &usize| ranked.values[*column].1.low;
+        let is_chosen = |column: &usize| Some(&options[*column].label) == listed.choice.as_ref();
+        let best = columns().filter(known).max_by(|a, b| {
+            let by_known = low(a).total_cmp(&low(b)).then(value(a).total_cmp(&value(b)));
+            by_known.then(is_chosen(a).cmp(&is_chosen(b))).then(b.cmp(a))
+        });
         UnderOne {
             setting: (every.name.clone(), every.values[model].clone()),
             verdict: None,

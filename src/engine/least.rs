@@ -129,19 +129,26 @@ impl Least {
         (scores, leader)
     }
 
-    /// Plans the next round: all columns that may be the least one of an option that may be the best.
+    /// Plans the next round: of the leader and of the one that may be better by most, whoever adds more to the gap by not being
+    /// known, or both if neither adds twice as much; and of those all columns that may be the least.
     fn plan(&mut self) {
         let (scores, leader) = self.standing();
-        let best = scores.iter().map(|score| score.low).fold(f64::NEG_INFINITY, at_least);
         self.wanted.clear();
-        if Self::gap(&scores, leader) > self.epsilon || self.trials.contains(&0) {
-            for (option, score) in scores.iter().enumerate() {
-                if option != leader && score.high <= best && !self.trials.contains(&0) {
-                    continue;
-                }
+        if self.trials.contains(&0) {
+            let all = (0..self.columns.len()).map(|arm| Share { arm, from: 0, to: WORD });
+            self.wanted.extend(all);
+        } else if Self::gap(&scores, leader) > self.epsilon {
+            let others = (0..scores.len()).filter(|option| *option != leader);
+            let Some(rival) = others.max_by(|a, b| scores[*a].high.total_cmp(&scores[*b].high)) else {
+                return;
+            };
+            let below = scores[leader].estimate - scores[leader].low;
+            let above = scores[rival].high - scores[rival].estimate;
+            let asked = [(leader, below, above), (rival, above, below)];
+            for (option, ..) in asked.into_iter().filter(|(_, own, other)| 2.0 * own >= *other) {
                 for column in option * self.models..(option + 1) * self.models {
-                    let from = self.trials[column];
-                    if from == 0 || self.value(column).1.low < score.high {
+                    if self.value(column).1.low < scores[option].high {
+                        let from = self.trials[column];
                         let to = from + WORD.max(from / GROWTH / WORD * WORD);
                         self.wanted.push(Share { arm: column, from, to });
                     }

@@ -55,7 +55,7 @@ pub struct Scratch {
     level: Level,
     pub(super) lanewise: Lanewise,
     pub(super) cells: Cells,
-    contacts: Contacts,
+    pub(super) contacts: Contacts,
     sums: Vec<Sum>,
     /// The slowness that the room ahead imposes in the collision-free speed model.
     pub(super) rooms: Vec<Sum>,

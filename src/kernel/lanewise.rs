@@ -6,7 +6,7 @@
 //! exactly zero, so the list changes no bit, and nothing of one lane is felt in another.
 
 use super::contact::Contacts;
-use super::force::pair::{Block, Pair, PairTerm, Sum};
+use super::force::pair::{Block, Pair, PairTerm, Sum, is_idle};
 use super::force::walls::{self, AtWalls};
 use super::force::{Forces, Room, with_pair_terms};
 use super::plane::{Open, Plane};
@@ -144,13 +144,21 @@ impl Lanewise {
 
     /// The slowness that the room ahead imposes, at the places that `forces` saw, into `sums`.
     #[inline(always)]
-    pub(super) fn rooms<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State, sums: &mut Vec<Sum>) {
+    pub(super) fn rooms<S: Simd>(
+        &mut self,
+        simd: S,
+        forces: &Forces,
+        state: &State,
+        sums: &mut Vec<Sum>,
+        contacts: &mut Contacts,
+    ) {
         sums.clear();
         sums.resize(state.agents, Sum::default());
+        let room = Room::of(state);
         self.kept.resize(state.agents * Room::COUNT, Lanes::ZERO);
         for (index, kept) in self.kept.chunks_exact_mut(Room::COUNT).enumerate() {
             for part in parts(simd) {
-                Room.keep(
+                room.keep(
                     part,
                     state,
                     Block { part, index },
@@ -159,16 +167,14 @@ impl Lanewise {
                 );
             }
         }
-        // Who may touch whom is known already.
-        let mut contacts = Contacts::default();
         match forces.closed {
             None => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (Room, Open), forces, sums, &mut contacts),
+                || self.pairs(simd, (room, Open), forces, sums, contacts),
             ),
             Some(plane) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (Room, plane), forces, sums, &mut contacts),
+                || self.pairs(simd, (room, plane), forces, sums, contacts),
             ),
         }
     }
@@ -385,10 +391,16 @@ impl Lanewise {
                     let j = others[at];
                     let other = &agents[j as usize];
                     let way = plane.way(part, (x - part.load(&other.x), y - part.load(&other.y)));
-                    let mut pair = Pair::new(part, way, r + part.load(&other.r));
-                    let touching = pair.gap.simd_gt(minus_margin);
-                    if touching.any_true() {
-                        contacts.push_pair(i as u32, j, part.bits(touching));
+                    let touch = r + part.load(&other.r);
+                    if is_idle(part, term, way, touch, forces.margin) {
+                        continue;
+                    }
+                    let mut pair = Pair::new(part, way, touch);
+                    if T::FINDS_TOUCH {
+                        let touching = pair.gap.simd_gt(minus_margin);
+                        if touching.any_true() {
+                            contacts.push_pair(i as u32, j, part.bits(touching));
+                        }
                     }
                     if let Some(screens) = self.neighbours.screens_of(at) {
                         let there = if P::IS_CLOSED {

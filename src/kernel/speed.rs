@@ -38,10 +38,10 @@ pub(super) fn set<S: Simd>(
             turn(part, state, block, lanes);
         }
     }
-    let Scratch { lanewise, cells, rooms, .. } = scratch;
+    let Scratch { lanewise, cells, rooms, contacts, .. } = scratch;
     match state.layout {
-        Layout::Trials => lanewise.rooms(simd, &program.forces, state, rooms),
-        Layout::Agents => cells.rooms(simd, &program.forces, state, rooms),
+        Layout::Trials => lanewise.rooms(simd, &program.forces, state, rooms, contacts),
+        Layout::Agents => cells.rooms(simd, &program.forces, state, rooms, contacts),
     }
     for block in 0..state.motion.x.len() {
         for part in parts(simd) {

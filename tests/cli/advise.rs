@@ -59,6 +59,40 @@ fn a_replay_gives_the_same_bytes_with_any_number_of_threads() {
     insta::assert_snapshot!("advise_square", text.join("\n"));
 }
 
+/// A choice for the worst case, at every cycle, by the file and by the call.
+#[test]
+fn advice_holds_under_every_model() {
+    let scene = LIVE
+        .replace("kind adult: sfm preset helbing2000 { noise = 0.05 m/s }", "kind adult: preset people")
+        + "param people = smc1 in smc1, cfs2\n";
+    let rank = RANK.replace("95 %", "95 % under every people");
+    let input = r#"{"t":0,"seen":[{"x":0,"y":0,"id":2},{"x":2,"y":0,"id":3}]}
+{"t":0.4,"seen":[{"x":0.4,"y":0,"id":2},{"x":1.8,"y":0,"id":3}]}
+{"t":0.8,"seen":[{"x":0.8,"y":0,"id":2},{"x":1.6,"y":0,"id":3}]}
+"#;
+    let cycles = |scene: &str, rank: &str, words: &[&str]| {
+        let place = Place::new(&[("a.scn", scene), ("a.bltl", rank)]);
+        let said =
+            place.fed(&[&["advise", "a.scn", "a.bltl", "--total-trials", "4000"], words].concat(), input);
+        assert_eq!(said.code, Some(0), "{}{}", said.out, said.err);
+        let cycles: Vec<Value> =
+            lines(&said.out).into_iter().filter(|one| one["status"] == "advice").collect();
+        assert_eq!(cycles.len(), 3, "{}", said.out);
+        cycles
+    };
+    let by_file = cycles(&scene, &rank, &[]);
+    let by_call = cycles(LIVE, RANK, &["--models", "smc1,cfs2"]);
+    // Seen once, the user is taken to stand; from the second time on a choice can be certified.
+    for (one, other) in by_file.iter().zip(&by_call).skip(1) {
+        assert_eq!(
+            (&one["certified"], &other["certified"]),
+            (&true.into(), &true.into()),
+            "{one:#}{other:#}"
+        );
+        assert!(one["move"].is_string() && other["move"].is_string(), "{one:#}{other:#}");
+    }
+}
+
 #[test]
 fn every_line_fits_the_schema() {
     let schema: Value = serde_json::from_str(include_str!("../../docs/schema/advice.schema.json")).unwrap();

@@ -122,24 +122,30 @@ impl Cells {
 
     /// The slowness that the room ahead imposes, at the places that `forces` saw, into `sums`.
     #[inline(always)]
-    pub(super) fn rooms<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State, sums: &mut Vec<Sum>) {
+    pub(super) fn rooms<S: Simd>(
+        &mut self,
+        simd: S,
+        forces: &Forces,
+        state: &State,
+        sums: &mut Vec<Sum>,
+        contacts: &mut Contacts,
+    ) {
         sums.clear();
         sums.resize(state.motion.x.len(), Sum::default());
         let Some(reach) = self.reach.filter(|_| state.occupied.has(0)) else { return };
-        // Who may touch whom is known already.
-        let mut contacts = Contacts::default();
+        let room = Room::of(state);
         simd.vectorize(
             #[inline(always)]
-            || self.keep(simd, Room, state),
+            || self.keep(simd, room, state),
         );
         match forces.closed {
             None => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, (Room, Open), forces, &mut contacts),
+                || self.pairs(simd, &reach, (room, Open), forces, contacts),
             ),
             Some(plane) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, (Room, plane), forces, &mut contacts),
+                || self.pairs(simd, &reach, (room, plane), forces, contacts),
             ),
         }
         self.scatter(sums);

@@ -1,15 +1,15 @@
 //! Social forces between the agents of one large crowd.
 //!
 //! For each strip first the work is listed, without a distance: for each agent the vectors of others behind it
-//! in the strip and of those in reach in the next strip. Then the list is worked off, in one loop
-//! without a branch that hangs on a distance. A vector that catches nobody in reach adds zero.
+//! in the strip and of those in reach in the next strip. Then the list is worked off, in one loop; no branch hangs on a
+//! distance, but for terms that cost more than one (`PairTerm::farthest`). A vector that catches nobody in reach adds zero.
 
 use super::Cells;
 use super::reach::Reach;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::force::Forces;
-use crate::kernel::force::pair::{Pair, PairTerm, Sum};
+use crate::kernel::force::pair::{Pair, PairTerm, Sum, is_idle};
 use crate::kernel::near::low_bits;
 use crate::kernel::plane::Plane;
 use crate::kernel::vector::{first_part, larger, parts, width};
@@ -171,16 +171,22 @@ impl Cells {
             let (i, j) = (from + task.one as usize, task.others as usize);
             let dx = part.c(xs[i]) - part.slice(&xs[j..j + LANES]);
             let dy = part.c(ys[i]) - part.slice(&ys[j..j + LANES]);
-            let mut pair = Pair::new(part, (dx, dy), part.c(rs[i]) + part.slice(&rs[j..j + LANES]));
+            let touch = part.c(rs[i]) + part.slice(&rs[j..j + LANES]);
+            if is_idle(part, term, (dx, dy), touch, forces.margin) {
+                continue;
+            }
+            let mut pair = Pair::new(part, (dx, dy), touch);
             if P::IS_CLOSED {
                 // Two may be near each other on two ways: the shortest counts.
                 let half = plane.half();
                 let detour = dx.abs().simd_gt(part.c(half.0)) | dy.abs().simd_gt(part.c(half.1));
                 pair.gap = detour.select(part.c(f64::NEG_INFINITY), pair.gap);
             }
-            let lanes = part.bits(pair.gap.simd_gt(minus_margin));
-            self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
-            found += usize::from(!lanes.is_empty());
+            if T::FINDS_TOUCH {
+                let lanes = part.bits(pair.gap.simd_gt(minus_margin));
+                self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
+                found += usize::from(!lanes.is_empty());
+            }
             if has_screens && pair.distance.simd_lt(reach).any_true() {
                 let group = task.one as usize / LANES;
                 let screens = self.first_screen[group] as usize..self.first_screen[group + 1] as usize;

@@ -69,6 +69,26 @@ pub(in crate::kernel) struct Pair<S: Simd> {
     pub(in crate::kernel) gap: Doubles<S>,
 }
 
+/// Whether nobody of a pair does anything to the other one, at such a way, in any lane.
+#[inline(always)]
+pub(in crate::kernel) fn is_idle<S: Simd, T: PairTerm>(
+    part: Part<S>,
+    term: T,
+    (dx, dy): (Doubles<S>, Doubles<S>),
+    touch: Doubles<S>,
+    margin: f64,
+) -> bool {
+    term.farthest(part, touch).is_some_and(
+        #[inline(always)]
+        |far| {
+            let far = if T::FINDS_TOUCH { larger::<S>(touch + part.c(margin), far) } else { far };
+            // An absent one is infinitely far from touching.
+            let far = larger::<S>(far, part.c(0.0));
+            !((dx * dx + dy * dy).simd_le(far * far) & touch.simd_gt(part.c(f64::NEG_INFINITY))).any_true()
+        },
+    )
+}
+
 impl<S: Simd> Pair<S> {
     /// Of two bodies that touch at a distance of `touch`.
     #[inline(always)]
@@ -88,6 +108,8 @@ pub(in crate::kernel) trait PairTerm: Copy {
     const COUNT: usize;
     /// Whether bodies keep a headway.
     const KEEPS_HEADWAY: bool = false;
+    /// Whether those who may touch are found on the way.
+    const FINDS_TOUCH: bool = true;
     /// These numbers, each as a `T`: a vector, or a column of all bodies.
     type Of<T: Copy>: Copy;
 
@@ -108,6 +130,13 @@ pub(in crate::kernel) trait PairTerm: Copy {
 
     /// How far beyond touching others are felt, m.
     fn reach<S: Simd>(self, part: Part<S>, state: &State, agents: impl AgentsInLanes<S>) -> Doubles<S>;
+
+    /// Beyond which distance of their centres bodies that touch at `touch` do nothing to each other, m. `None` if a pair
+    /// costs less than to ask.
+    #[inline(always)]
+    fn farthest<S: Simd>(self, _part: Part<S>, _touch: Doubles<S>) -> Option<Doubles<S>> {
+        None
+    }
 
     /// The force that pushes the first body away from the second, and that which pushes the second away from the first, over
     /// their distance, N/m. Zero where the gap is minus infinity.

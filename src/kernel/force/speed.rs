@@ -16,6 +16,8 @@
 //! Two terms of pairs: [`Swerve`] sums the direction, and [`Room`], once that is known, the slowness `T/s`.
 
 use super::pair::{AgentsInLanes, Pair, PairTerm, Push};
+use crate::base::lanes::LANES;
+use crate::base::math::at_least;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, Truths, exp2, larger, smaller};
 use crate::model::Parameter;
@@ -25,6 +27,12 @@ use std::f64::consts::LOG2_E;
 
 /// Agents whose centres are farther away are not felt, m.
 pub(super) const SIGHT: f64 = 3.0;
+
+/// Walls are felt as far as this, in their ranges: as far as a turn changes a double.
+const WALLS_AT: f64 = 37.0;
+
+/// For what rounding may take off a distance.
+const AMPLY: f64 = 1.0 + 1e-9;
 
 /// A gap that is no gap, m: whoever has it stands.
 const NO_GAP: f64 = 1e-300;
@@ -49,6 +57,12 @@ pub(in crate::kernel) struct Turned<T> {
     strength: T,
     /// log2(e)/D, 1/m.
     rate: T,
+}
+
+/// How much the other one of a pair turns the direction where both touch at the strength of 1.
+#[inline(always)]
+fn turn<S: Simd>(part: Part<S>, pair: &Pair<S>, rate: Doubles<S>) -> Doubles<S> {
+    exp2(part, smaller::<S>(larger::<S>(pair.gap * rate, part.c(POWERS.0)), part.c(POWERS.1)))
 }
 
 impl PairTerm for Swerve {
@@ -82,7 +96,15 @@ impl PairTerm for Swerve {
     #[inline(always)]
     fn reach<S: Simd>(self, part: Part<S>, state: &State, agents: impl AgentsInLanes<S>) -> Doubles<S> {
         let range = agents.field(&state.bodies[Parameter::SwerveRange]);
-        range.simd_gt(part.c(0.0)).select(part.c(SIGHT), part.c(0.0))
+        // Less the own radius: two that see each other are no farther beyond touching.
+        let others = part.c(SIGHT) - agents.field(&state.bodies[Parameter::Radius]);
+        let walls = part.c(WALLS_AT) * agents.field(&state.bodies[Parameter::WallRange]);
+        range.simd_gt(part.c(0.0)).select(larger::<S>(walls, others), part.c(0.0))
+    }
+
+    #[inline(always)]
+    fn farthest<S: Simd>(self, part: Part<S>, _: Doubles<S>) -> Option<Doubles<S>> {
+        Some(part.c(SIGHT * AMPLY))
     }
 
     #[inline(always)]
@@ -93,18 +115,38 @@ impl PairTerm for Swerve {
         one: &Turned<Doubles<S>>,
         other: &Turned<Doubles<S>>,
     ) -> (Doubles<S>, Doubles<S>) {
-        let sees = sees(part, pair);
-        let turn = |of: &Turned<Doubles<S>>| {
-            let power = smaller::<S>(larger::<S>(pair.gap * of.rate, part.c(POWERS.0)), part.c(POWERS.1));
-            sees.select(of.strength * exp2(part, power) * pair.inverse, part.c(0.0))
-        };
-        (turn(one), turn(other))
+        let (sees, zero) = (sees(part, pair), part.c(0.0));
+        let on_one = turn(part, pair, one.rate);
+        // Most have the same range: then one exponential serves both.
+        let is_shared = one.rate.simd_eq(other.rate).all_true();
+        let on_other = if is_shared { on_one } else { turn(part, pair, other.rate) };
+        (
+            sees.select(one.strength * on_one * pair.inverse, zero),
+            sees.select(other.strength * on_other * pair.inverse, zero),
+        )
     }
 }
 
 /// The room ahead limits the speed.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::kernel) struct Room;
+pub(in crate::kernel) struct Room {
+    /// The largest gap that limits the speed of anybody, v0 T, m.
+    gap: f64,
+}
+
+impl Room {
+    /// Among the agents of a state.
+    pub(in crate::kernel) fn of(state: &State) -> Self {
+        let times = &state.bodies[Parameter::TimeGap];
+        let gaps = state
+            .driving
+            .speed
+            .iter()
+            .zip(times)
+            .flat_map(|(speed, time)| (0..LANES).map(|lane| speed.0[lane] * time.0[lane]));
+        Self { gap: gaps.fold(0.0, at_least) * AMPLY }
+    }
+}
 
 /// Numbers of a body.
 #[derive(Clone, Copy)]
@@ -116,9 +158,26 @@ pub(in crate::kernel) struct Going<T> {
     time: T,
 }
 
+/// The slowness that the other one of a pair imposes, s/m, where it is in front: so far along the direction, with `sign` for
+/// the way to it, and no farther to the side than both radii.
+#[inline(always)]
+fn slowness<S: Simd>(
+    part: Part<S>,
+    pair: &Pair<S>,
+    sees: Truths<S>,
+    sign: f64,
+    of: &Going<Doubles<S>>,
+) -> Doubles<S> {
+    let ahead = (pair.dx * of.ex + pair.dy * of.ey) * part.c(sign);
+    let aside = (pair.dx * of.ey - pair.dy * of.ex).abs();
+    let meets = ahead.simd_ge(part.c(0.0)) & aside.simd_le(pair.gap + pair.distance);
+    (sees & meets).select(of.time / larger::<S>(-pair.gap, part.c(NO_GAP)), part.c(0.0))
+}
+
 impl PairTerm for Room {
     const COUNT: usize = 3;
     const KEEPS_HEADWAY: bool = true;
+    const FINDS_TOUCH: bool = false;
     type Of<T: Copy> = Going<T>;
 
     #[inline(always)]
@@ -150,6 +209,11 @@ impl PairTerm for Room {
     }
 
     #[inline(always)]
+    fn farthest<S: Simd>(self, part: Part<S>, touch: Doubles<S>) -> Option<Doubles<S>> {
+        Some(touch + part.c(self.gap))
+    }
+
+    #[inline(always)]
     fn force<S: Simd>(
         self,
         part: Part<S>,
@@ -170,20 +234,11 @@ impl PairTerm for Room {
     ) -> Push<S> {
         let zero = part.c(0.0);
         let sees = sees(part, pair);
-        let wide = pair.gap + pair.distance;
-        let room = larger::<S>(-pair.gap, part.c(NO_GAP));
-        // `ahead` is how far the other one is along the direction.
-        let slowness = |of: &Going<Doubles<S>>, ahead: Doubles<S>| {
-            let aside = (pair.dx * of.ey - pair.dy * of.ex).abs();
-            let is_ahead = ahead.simd_ge(zero) & aside.simd_le(wide);
-            (sees & is_ahead).select(of.time / room, zero)
-        };
-        let along = |of: &Going<Doubles<S>>| pair.dx * of.ex + pair.dy * of.ey;
         Push {
             one: (zero, zero),
             other: (zero, zero),
-            slowness_of_one: slowness(one, -along(one)),
-            slowness_of_other: slowness(other, along(other)),
+            slowness_of_one: slowness(part, pair, sees, -1.0, one),
+            slowness_of_other: slowness(part, pair, sees, 1.0, other),
         }
     }
 }
