@@ -286,7 +286,7 @@ fn inferred_traces_are_played_and_drawn() {
 fn a_replay_with_advice_is_played_beside_its_advice() {
     let place = Place::new(&[]);
     let path = place.path("a.html");
-    let words = ["models/square.scn", "properties/square.bltl", "--replay", "here", "--total-trials", "200"];
+    let words = ["models/square.scn", "properties/square.bltl", "--tracks", "here", "--total-trials", "200"];
     let page = |more: &[&str]| {
         let call = [&["advise"][..], &words, more, &["--report", path.to_str().unwrap()]].concat();
         let said = at_root(&call);
@@ -365,7 +365,7 @@ fn a_page_works_in_a_browser() {
         ("infer.html", &["infer", &seen]),
         (
             "advise.html",
-            &["advise", &square, &asked, "--replay", "here", "--to", "2s", "--total-trials", "200"],
+            &["advise", &square, &asked, "--tracks", "here", "--to", "2s", "--total-trials", "200"],
         ),
     ];
     for (page, words) in calls {

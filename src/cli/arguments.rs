@@ -9,15 +9,15 @@ use super::replay::{EvaluateCommand, FitCommand, MonitorCommand};
 use super::simulate::choice::Keep;
 use super::simulate::destination::left_out;
 use super::terminal::ColorChoice;
-use super::values::Destination;
 use super::values::{
-    Limit, Model, TextFormat, parse_count, parse_moment, parse_quiet, parse_share, parse_velocity,
+    Cores, Destination, Limit, Model, TextFormat, parse_count, parse_moment, parse_positive, parse_quiet,
+    parse_share, parse_threads, parse_trials,
 };
 use super::walk::WalkCommand;
 use crate::data::table::{FORMATS, TraceFormat};
-use crate::data::tracks::Velocity;
 use clap::builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Command, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::num::NonZeroU64;
 use std::path::PathBuf;
 
 /// Statistical model checking of people in motion.
@@ -28,9 +28,9 @@ use std::path::PathBuf;
     Start with: smc check models/corridor.scn properties/corridor.bltl"
 )]
 pub(super) struct Arguments {
-    /// The command.
+    /// The verb.
     #[command(subcommand)]
-    pub(super) command: Command,
+    pub(super) verb: Verb,
     /// When to color the output.
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub(super) color: ColorChoice,
@@ -38,54 +38,74 @@ pub(super) struct Arguments {
 
 /// Verbs.
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(super) enum Verb {
     /// Answer the queries of property files about a scenario: decide, estimate, compare, rank.
     Check(Box<Check>),
-    /// Run a shard of a plan, on any machine, and write its part.
-    Shard(Box<ShardCommand>),
-    /// Answer the queries from the parts of shards in a folder, DIR; the plan of what is lacking is written there.
-    Merge(Box<Merge>),
+    /// Show how a scenario and its property files were understood.
+    Show(Show),
+    /// Draw a figure of results as SVG: a sweep, a ranking, a distribution, how evidence grew, calibration.
+    Plot(PlotCommand),
     /// Run trials of a scenario and write their traces.
     Simulate(Box<Simulate>),
     /// Write the paths and speed profiles of walkers that plan.
     Path(Box<PathCommand>),
-    /// Advise a user while others are observed: rank moves for each batch of observations.
-    Advise(Box<AdviseCommand>),
+    /// Run many trials and write how agents walk, leg by leg: lengths, times, steps, traces, a picture.
+    Walk(Box<WalkCommand>),
+    /// Infer traces and groups from a recording or a table of observations.
+    Infer(Box<InferCommand>),
     /// Ask the formulas of property files of a recording itself: what people did.
     Monitor(Box<MonitorCommand>),
     /// Compare the predictions of a model with what happened in a recording.
     Evaluate(Box<EvaluateCommand>),
     /// Fit parameters of a model to a recording.
     Fit(Box<FitCommand>),
-    /// Infer traces and groups from a recording or a table of observations.
-    Infer(Box<InferCommand>),
-    /// Cut motion capture into steps; learn gaits from them, show, draw and score these.
-    #[command(subcommand)]
-    Gait(Box<GaitCommand>),
-    /// Run many trials and write how agents walk, leg by leg: lengths, times, steps, traces, a picture.
-    Walk(Box<WalkCommand>),
-    /// Draw a figure of results as SVG: a sweep, a ranking, a distribution, how evidence grew, calibration.
-    Plot(PlotCommand),
-    /// Compare two sets of recorded or simulated walks.
-    CompareWalks(CompareWalks),
+    /// Advise a user while others are observed: rank moves for each batch of observations.
+    Advise(Box<AdviseCommand>),
     /// Detect a change of the probability of recorded or streamed outcomes.
     Drift(Drift),
-    /// Show how a scenario and its property files were understood.
-    Show(Show),
+    /// Cut motion capture into steps; learn gaits from them, show, draw, score and compare these.
+    #[command(subcommand)]
+    Gait(Box<GaitCommand>),
+    /// Run a shard of a plan, on any machine, and write its part.
+    Shard(Box<ShardCommand>),
+    /// Answer the queries from the parts of shards in a folder, DIR; the plan of what is lacking is written there.
+    Merge(Box<Merge>),
     /// Format scenarios and property files; comments are kept.
     Fmt(Format),
     /// Explain a code of an error or warning, such as E0303, a procedure or a function.
     Explain(Explain),
     /// Write completions for a shell to standard output.
-    Completions {
-        /// The shell.
-        shell: clap_complete::Shell,
-    },
+    Completions(Completions),
     /// Write man pages into a directory.
-    Man {
-        /// The directory.
-        directory: PathBuf,
-    },
+    Man(Man),
+}
+
+/// The verbs in groups, as the help shows them.
+const GROUPS: [(&str, &[&str]); 7] = [
+    ("Ask", &["check", "show", "plot"]),
+    ("Look", &["simulate", "path", "walk"]),
+    ("Recordings", &["infer", "monitor", "evaluate", "fit", "advise", "drift"]),
+    ("Gait", &["gait"]),
+    ("Large runs", &["shard", "merge"]),
+    ("Files", &["fmt", "explain"]),
+    ("Shell", &["completions", "man"]),
+];
+
+/// The command line, with its verbs in groups.
+pub(super) fn definition() -> Command {
+    let all = Arguments::command();
+    let mut list = String::new();
+    for (group, verbs) in GROUPS {
+        list += &format!("{group}:\n");
+        for verb in verbs {
+            let about = all.find_subcommand(verb).and_then(Command::get_about).map(ToString::to_string);
+            list += &format!("  {verb:<12} {}\n", about.unwrap_or_default());
+        }
+        list.push('\n');
+    }
+    all.help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}Options:\n{{options}}{{after-help}}"
+    ))
 }
 
 /// What is asked, and how it is reported.
@@ -97,16 +117,12 @@ pub(super) struct Questions {
     /// Property files (`.bltl`), or `-` for standard input.
     #[arg(required = true)]
     pub(super) properties: Vec<String>,
-    /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
-    /// set, as the tracks say, or else recorded.
-    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
-    pub(super) velocity: Option<Velocity>,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
-    /// Number of threads; all cores by default. Never changes a result.
-    #[arg(short = 'j', long)]
-    pub(super) threads: Option<usize>,
+    /// Threads.
+    #[command(flatten)]
+    pub(super) cores: Cores,
     /// Largest number of trials of a query (of a ranking: of an option); one million by default.
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) max_trials: Option<u64>,
@@ -180,9 +196,6 @@ pub(super) struct ShardCommand {
     /// Property files (`.bltl`).
     #[arg(required = true)]
     pub(super) properties: Vec<String>,
-    /// Which velocities recorded people have, as in `smc check`.
-    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
-    pub(super) velocity: Option<Velocity>,
     /// The plan of the round.
     #[arg(long, value_name = "PLAN.json")]
     pub(super) round: PathBuf,
@@ -193,7 +206,7 @@ pub(super) struct ShardCommand {
     #[arg(short, long, value_name = "DIR")]
     pub(super) output: PathBuf,
     /// Number of threads; one by default, because queues count cores.
-    #[arg(short = 'j', long, default_value_t = 1)]
+    #[arg(short = 'j', long, default_value = "1", value_parser = parse_threads)]
     pub(super) threads: usize,
 }
 
@@ -209,10 +222,6 @@ pub(super) struct Simulate {
     /// Property files (`.bltl`) for `--keep`.
     #[arg(requires = "keep")]
     pub(super) properties: Vec<String>,
-    /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
-    /// set, as the tracks say, or else recorded.
-    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
-    pub(super) velocity: Option<Velocity>,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
@@ -220,14 +229,14 @@ pub(super) struct Simulate {
     #[arg(long, default_value_t = 0, value_name = "INDEX")]
     pub(super) trial: u64,
     /// Number of trials.
-    #[arg(short = 'n', long, default_value_t = 1, value_name = "N")]
-    pub(super) trials: u64,
+    #[arg(short = 'n', long, default_value = "1", value_name = "N", value_parser = parse_trials)]
+    pub(super) trials: NonZeroU64,
     /// Follow a move or a path, named as in a ranking: `heading 15 deg`, `stop`, `route left`, `path 2`.
     #[arg(long = "move", visible_alias = "path", value_name = "MOVE")]
     pub(super) advice: Option<String>,
     /// Write only every N-th state.
-    #[arg(long, default_value_t = 1, value_name = "N")]
-    pub(super) every: u64,
+    #[arg(long, default_value = "1", value_name = "N", value_parser = parse_positive)]
+    pub(super) every: NonZeroU64,
     /// Stop at this time instead of the horizon: `2.5s`; a number without a unit is in seconds.
     #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) until: Option<f64>,
@@ -257,42 +266,6 @@ fn trace_formats() -> impl TypedValueParser<Value = &'static TraceFormat> {
         let format = FORMATS.iter().find(|format| format.name == name).ok_or("unknown format")?;
         if format.open.is_some() { Ok(format) } else { Err(left_out(format)) }
     })
-}
-
-/// `smc compare-walks`
-#[derive(Args, Debug)]
-pub(super) struct CompareWalks {
-    /// The first set, such as recorded walks: a CSV file with the columns `walk`, `t` (s), `x` and `y` (m), and perhaps
-    /// `leg`; `-` for standard input.
-    #[arg(value_name = "A.csv")]
-    pub(super) first: String,
-    /// The second set, such as simulated walks.
-    #[arg(value_name = "B.csv")]
-    pub(super) second: String,
-    /// Walks with the same name belong together: also test whether they differ (Wilcoxon).
-    #[arg(long)]
-    pub(super) paired: bool,
-    /// Also write the distance of each point to the nearest one of the other set.
-    #[arg(long, value_name = "FILE.csv")]
-    pub(super) points: Option<PathBuf>,
-    /// Seed of permutations, resamples and halves.
-    #[arg(long, default_value_t = 0)]
-    pub(super) seed: u64,
-    /// Format of the comparison.
-    #[arg(long, value_enum, default_value_t = WalksFormat::Text)]
-    pub(super) format: WalksFormat,
-    /// File to write instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
-}
-
-/// Formats of `smc compare-walks`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum WalksFormat {
-    /// For people.
-    Text,
-    /// One object; see docs/schema/walks.schema.json.
-    Json,
 }
 
 /// `smc drift`
@@ -381,13 +354,36 @@ pub(super) struct Explain {
     pub(super) name: Option<String>,
 }
 
+/// `smc completions`
+#[derive(Args, Debug)]
+pub(super) struct Completions {
+    /// The shell.
+    pub(super) shell: clap_complete::Shell,
+}
+
+/// `smc man`
+#[derive(Args, Debug)]
+pub(super) struct Man {
+    /// The directory.
+    pub(super) directory: PathBuf,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_definition_is_consistent() {
-        use clap::CommandFactory;
-        Arguments::command().debug_assert();
+        definition().debug_assert();
+    }
+
+    #[test]
+    fn each_verb_is_in_one_group() {
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, verbs)| *verbs).copied().collect();
+        let all = definition();
+        let mut verbs: Vec<&str> = all.get_subcommands().map(Command::get_name).collect();
+        grouped.sort_unstable();
+        verbs.sort_unstable();
+        assert_eq!(grouped, verbs);
     }
 }

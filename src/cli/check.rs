@@ -19,7 +19,6 @@ use crate::model::Scenario;
 use crate::report::html::Page;
 use crate::report::{ExitCode as Exit, Format, Palette};
 use crate::route::Ways;
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use crate::trials::budget::DEFAULT_TRIALS;
@@ -76,14 +75,8 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         return reporter.refuse_for(&doubts);
     }
     reporter.warn(&doubts);
-    if arguments.threads == Some(0) {
-        return reporter.refuse(complaint::argument(
-            "`--threads` must be positive (got 0)",
-            "write a number from 1, or remove the option to use all cores",
-        ));
-    }
     let most = most_threads();
-    if arguments.threads.is_some_and(|threads| threads > most) {
+    if arguments.cores.threads.is_some_and(|threads| threads > most) {
         say(&format!(
             "warning: more than {most} threads are not faster on this machine, so {most} are used; results do not change\n"
         ));
@@ -92,7 +85,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     let shards = arguments.shards.map(|shards| shards as usize);
     // Shards of this process are its threads.
     let fewest = shards.filter(|_| is_local).unwrap_or(most);
-    let threads = arguments.threads.unwrap_or_else(cores).min(most).min(fewest);
+    let threads = arguments.cores.threads.unwrap_or_else(cores).min(most).min(fewest);
     let executor = match values::threads(Some(threads)) {
         Ok(executor) => executor,
         Err(error) => return reporter.refuse(error),
@@ -327,11 +320,10 @@ fn ender(arguments: &Questions, colors: Colors) -> impl Fn(Ended) -> Exit + Clon
 }
 
 /// A report of a call whose command line cannot be understood, in formats for machines.
-pub(super) fn misused(chosen: Format, message: &str) {
-    let error = Diagnostic::placeless(Code::E0705, message);
+pub(super) fn misused(chosen: Format, error: &Diagnostic) {
     let run = CallResult {
-        diagnostics: inputs::findings(&[error], &[]),
-        failure: Some(Failure::Input(message.to_owned())),
+        diagnostics: inputs::findings(std::slice::from_ref(error), &[]),
+        failure: Some(Failure::Input(error.title.clone())),
         ..CallResult::of("", 0)
     };
     for_machines(chosen, &run);
@@ -368,7 +360,7 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 
 /// The files and settings of the call.
 fn line(arguments: &Questions) -> CommandLine {
-    let line = page::line(&arguments.model, arguments.velocity);
+    let line = page::line(&arguments.model);
     CommandLine { properties: arguments.properties.clone(), ..line }
 }
 

@@ -170,7 +170,8 @@ fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
 /// Reads and parses what a call names; also the files that were opened, where they were found.
 pub(super) fn parse(model: &Model, properties: &[String]) -> (Parsed, Vec<PathBuf>) {
     let mut disk = Disk { model, paths: Vec::new() };
-    (read_all(names(model, properties), &mut disk), disk.paths)
+    // Of recordings that are replayed each is read by itself, with the velocities that the command asks for.
+    (read_all(Names { velocity: None, ..names(model, properties) }, &mut disk), disk.paths)
 }
 
 /// The same, and says what is wrong; none with errors.

@@ -1,6 +1,6 @@
 //! Completions and man pages.
 
-use super::arguments::{Arguments, Explain};
+use super::arguments::{Completions, Explain, Man, definition};
 use super::complaint;
 use super::terminal::print;
 use crate::compile::nearest::nearest;
@@ -8,20 +8,19 @@ use crate::model::BuiltIn;
 use crate::stats::PROCEDURES;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-use clap::CommandFactory;
-use std::path::Path;
 
 /// Completions of a shell, to standard output.
-pub(super) fn completions(shell: clap_complete::Shell) -> Result<(), Diagnostic> {
+pub(super) fn completions(arguments: &Completions) -> Result<(), Diagnostic> {
     let mut bytes = Vec::new();
-    clap_complete::generate(shell, &mut Arguments::command(), "smc", &mut bytes);
+    clap_complete::generate(arguments.shell, &mut definition(), "smc", &mut bytes);
     print(&String::from_utf8_lossy(&bytes))
 }
 
 /// Man pages, into a directory.
-pub(super) fn pages(directory: &Path) -> Result<(), Diagnostic> {
-    let written = std::fs::create_dir_all(directory)
-        .and_then(|()| clap_mangen::generate_to(Arguments::command(), directory));
+pub(super) fn pages(arguments: &Man) -> Result<(), Diagnostic> {
+    let directory = &arguments.directory;
+    let written =
+        std::fs::create_dir_all(directory).and_then(|()| clap_mangen::generate_to(definition(), directory));
     written.map_err(|error| {
         complaint::output(format!("man pages cannot be written to `{}`: {error}", directory.display()))
     })

@@ -6,7 +6,6 @@ use super::values::Model;
 use super::{complaint, output};
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
-use crate::data::tracks::Velocity;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::{Traces, simulated};
 use crate::engine::{CommandLine, no_start};
@@ -23,12 +22,12 @@ pub(super) fn write(path: &Path, page: Page<'_>, colors: Colors) -> Exit {
 }
 
 /// The files and settings of a call without properties.
-pub(super) fn line(model: &Model, velocity: Option<Velocity>) -> CommandLine {
+pub(super) fn line(model: &Model) -> CommandLine {
     CommandLine {
         scenario: model.scenario.clone(),
         settings: model.set.clone(),
         data: model.data.iter().map(|data| data.display().to_string()).collect(),
-        velocity: velocity.map(|velocity| velocity.name().to_owned()),
+        velocity: model.velocity.map(|velocity| velocity.name().to_owned()),
         models: model.models.clone(),
         ..CommandLine::default()
     }

@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
         let budget = Arc::new(Budget::new(plan.max_trials, None));
         let signalled = Arc::clone(&budget);
         let _ = ctrlc::set_handler(move || signalled.interrupt());
-        let threads = threads(Some(arguments.threads.max(1)))?;
+        let threads = threads(Some(arguments.threads))?;
         let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
         let part = run_shard(&study, (&plan, arguments.index), &drivers, &threads, &budget);
         let part = part.map_err(|fault| library::refusals(&fault))?;

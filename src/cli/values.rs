@@ -1,11 +1,13 @@
 //! What options of several commands have in common: the model, times, counts and shares.
 
+use crate::base::random::MOST_TRIALS;
 use crate::data::tracks::Velocity;
 use crate::engine::{Fault, Threads};
 use crate::library;
 use crate::report::Format;
 use crate::syntax::diagnostic::Diagnostic;
 use clap::{Args, ValueEnum};
+use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -33,9 +35,18 @@ pub(super) struct Model {
     /// Ask everything with people of each of these presets, whatever the scenario says: `smc1,cfs2,helbing2000`.
     #[arg(long = "models", value_name = "PRESETS", value_delimiter = ',')]
     pub(super) models: Vec<String>,
-    /// Which velocities recordings have, where the call says so.
-    #[arg(skip)]
+    /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
+    /// set, as the tracks say, or else recorded; `advise`, `evaluate` and `fit` take those that are seen.
+    #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]
     pub(super) velocity: Option<Velocity>,
+}
+
+/// How many threads a call has.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct Cores {
+    /// Number of threads; all cores by default. Never changes a result.
+    #[arg(short = 'j', long, value_parser = parse_threads)]
+    pub(super) threads: Option<usize>,
 }
 
 /// How long a call may take.
@@ -76,6 +87,37 @@ pub(super) fn parse_count(text: &str) -> Result<u64, String> {
     let exact = text.parse().ok();
     let rounded = || text.parse().ok().filter(|n: &f64| *n >= 0.0 && *n <= 9e15 && n.fract() == 0.0);
     exact.or_else(|| rounded().map(|n| n as u64)).ok_or_else(wrong)
+}
+
+/// A whole number from 1: `20000`, `2e4`.
+pub(super) fn parse_positive(text: &str) -> Result<NonZeroU64, String> {
+    let number = parse_count(text).ok().and_then(NonZeroU64::new);
+    number.ok_or_else(|| format!("`{text}` is not a whole number from 1: write 10000 or 1e4"))
+}
+
+/// A number of trials: they are numbered from 0.
+pub(super) fn parse_trials(text: &str) -> Result<NonZeroU64, String> {
+    let number = parse_positive(text)?;
+    let number = Some(number).filter(|number| number.get() <= MOST_TRIALS);
+    number.ok_or_else(|| format!("write a number from 1 to {MOST_TRIALS}"))
+}
+
+/// A number of threads.
+pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|number| *number > 0);
+    number.ok_or_else(|| "write a number from 1, or remove the option to use all cores".to_owned())
+}
+
+/// A number of rows or frames a second.
+pub(super) fn parse_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| *rate > 0.0 && *rate <= 1e6);
+    rate.ok_or_else(|| "write a number a second, above 0 and at most 1e6, such as 120".to_owned())
+}
+
+/// A positive number.
+pub(super) fn parse_above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "write a positive number".to_owned())
 }
 
 /// A whole number within limits.

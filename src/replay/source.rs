@@ -32,12 +32,12 @@ pub fn source<'f>(file: &ScenarioFile, files: &'f Files, name: &str) -> Result<T
     });
     let Some((Some((format, path)), body)) = tracks else {
         if tracks.is_some() {
-            let hint = "remove `--replay` and give the batches to the standard input of `smc advise`";
-            let said = format!("`--replay {name}`: `{name}` is a stream and has no file");
+            let hint = "remove `--tracks` and give the batches to the standard input of `smc advise`";
+            let said = format!("`--tracks {name}`: `{name}` is a stream and has no file");
             return wrong(said, hint.to_owned());
         }
         let hint = format!("declare them in the scenario: `tracks {name} = eth_biwi \"obsmat.txt\"`");
-        return wrong(format!("`--replay {name}`: the scenario has no such recording"), hint);
+        return wrong(format!("`--tracks {name}`: the scenario has no such recording"), hint);
     };
     let bytes = files.get(&path.value).map_err(|reason| error!(E0701, path.span, "{reason}"))?;
     let reading = reading_of(body)?;

@@ -1,4 +1,4 @@
-//! Two sets of walks compared, as text, JSON and the distances of points: `smc compare-walks`.
+//! Two sets of walks compared, as text, JSON and the distances of points: `smc gait compare`.
 
 use super::number::{brief, count, counted};
 use crate::data::walks::Walk;

@@ -43,7 +43,7 @@ fn statuses(out: &str) -> Vec<String> {
 
 fn square(words: &[&str]) -> Said {
     let call =
-        ["advise", "models/square.scn", "properties/square.bltl", "--replay", "here", "--total-trials"];
+        ["advise", "models/square.scn", "properties/square.bltl", "--tracks", "here", "--total-trials"];
     at_root(&[&call[..], words].concat())
 }
 
@@ -244,7 +244,7 @@ fn messages_about_lines_name_the_member_and_its_form() {
 fn a_page_of_a_live_stream_needs_a_recording() {
     let said = fed("", &["--report", "a.html"]);
     assert_eq!(said.code, Some(2));
-    assert!(said.err.contains("`--replay lidar --report a.html`"), "{}", said.err);
+    assert!(said.err.contains("`--tracks lidar --report a.html`"), "{}", said.err);
     assert!(said.err.contains("tracks lidar = observations \"obs.jsonl\""), "{}", said.err);
 }
 
@@ -314,7 +314,7 @@ fn both_planners_of_the_paper_answer_on_the_hotel_recording() {
             &properties,
             "--data",
             data.to_str().unwrap(),
-            "--replay",
+            "--tracks",
             "hotel",
             "--from",
             "646.8s",

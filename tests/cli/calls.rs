@@ -170,8 +170,8 @@ fn warnings_point_at_families_that_are_left_and_formulas_that_never_change() {
 fn calls_that_would_do_nothing_are_refused() {
     let place = small("check P(F<=3 s contact(user)) >= 0.5\nestimate P(F<=3 s contact(user)) within 0.1\n");
     for (words, said) in [
-        (&["simulate", "a.scn", "--every", "0"][..], "`--every` must be positive (got 0)"),
-        (&["simulate", "a.scn", "--trials", "0"], "`--trials` must be positive (got 0)"),
+        (&["simulate", "a.scn", "--every", "0"][..], "`0` is not a whole number from 1"),
+        (&["simulate", "a.scn", "--trials", "0"], "`0` is not a whole number from 1"),
         (&["simulate", "a.scn", "--trial", "281474976710656"], "numbered from 0 to 281474976710655"),
         (&["simulate", "a.scn", "--until", "4.5"], "the horizon of the scenario is 4 s"),
         (&["simulate", "a.scn", "--until", "-1"], "must be a time that is not negative"),

@@ -188,8 +188,11 @@ fn bad_input_is_refused() {
         (&["text.txt"], &["in no known format", "--input"]),
         (&["missing.csv"], &["error[E0701]", "does not exist"]),
         (&["a.csv", "--from", "30s"], &["between `--from` and `--to`", "from 0 s to 20 s"]),
-        (&["a.csv", "--threshold", "0"], &["must be positive"]),
-        (&["a.csv", "--fps", "0"], &["error[E0705]", "`--fps` must be above 0", "got 0"]),
+        (&["a.csv", "--threshold", "0"], &["write a positive number"]),
+        (
+            &["a.csv", "--fps", "0"],
+            &["error[E0705]", "`--fps <RATE>` cannot be `0`", "above 0 and at most 1e6"],
+        ),
         (&["a.csv", "--annotated", "groups.txt"], &["names nobody who is in the recording"]),
         (&["a.csv", "-o", "a.csv"], &["error[E0920]", "overwrite"]),
     ] {

@@ -4,7 +4,7 @@ use crate::program::{Place, Said, at_root};
 use serde_json::Value;
 
 fn square(command: &str, words: &[&str]) -> Said {
-    let call = [command, "models/square.scn", "properties/square.bltl", "--replay", "here"];
+    let call = [command, "models/square.scn", "properties/square.bltl", "--tracks", "here"];
     at_root(&[&call[..], words].concat())
 }
 
@@ -65,7 +65,7 @@ const SAFE: &str = "property safe = G<=1 s (forall a in others: distance(user, a
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let here = ["--replay", "here"];
+    let here = ["--tracks", "here"];
     let named =
         format!("{PAIR}agent friend: adult from here at 0 s id 2\n").replace("except 1", "except 1, 2");
     let robot = format!("{PAIR}agent robot: adult {{ at = (0, 9); route = (9, 9) }}\n");
@@ -74,7 +74,7 @@ fn what_does_not_fit_is_refused() {
         .replace(" id 1", " group of 1")
         .replace("user,", "user[1],");
     let all = [
-        refused(PAIR, SAFE, &["--replay", "there"]),
+        refused(PAIR, SAFE, &["--tracks", "there"]),
         refused(PAIR, SAFE, &[&here[..], &["--user", "9"]].concat()),
         refused(PAIR, SAFE, &[&here[..], &["--from", "7s"]].concat()),
         refused(PAIR, "estimate P(G<=1 s (x(user) > 0 m))\n", &here),

@@ -570,7 +570,7 @@ fn a_trial_of_a_table_is_replayed() {
     assert_eq!(place.call(&["simulate", "a.scn", "-n", "3", "-o", "t.csv"]).code, Some(0));
     for (trial, code) in [("1", 0), ("7", 2), ("0.5", 2), ("1 s", 2)] {
         place.write("b.scn", replayed.replace("TRIAL", trial).as_bytes());
-        let said = place.call(&["monitor", "b.scn", "p.bltl", "--replay", "seen"]);
+        let said = place.call(&["monitor", "b.scn", "p.bltl", "--tracks", "seen"]);
         assert_eq!(said.code, Some(code), "{trial}: {}", said.err);
         assert_eq!(code == 2, said.err.contains("trial"), "{}", said.err);
     }

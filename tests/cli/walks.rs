@@ -1,4 +1,4 @@
-//! `smc compare-walks` from the outside: the report, the table of points, and tables that are wrong.
+//! `smc gait compare` from the outside: the report, the table of points, and tables that are wrong.
 
 use crate::program::Place;
 use serde_json::Value;
@@ -23,13 +23,14 @@ fn walks(count: u32, seconds: f64, legs: &[&str]) -> String {
 fn two_sets_are_compared_as_text_json_and_points() {
     let tables = [walks(24, 2.0, &["in", "out"]), walks(24, 2.4, &["in", "out"])];
     let place = Place::new(&[("a.csv", &tables[0]), ("b.csv", &tables[1])]);
-    let said = place.call(&["compare-walks", "a.csv", "b.csv", "--paired"]);
+    let said = place.call(&["gait", "compare", "a.csv", "b.csv", "--paired"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
     for part in ["A  a.csv  (24 walks, 504 points)", "All walks: 24 of A", "Leg out: 12 of A", "pairs, B - A"]
     {
         assert!(said.out.contains(part), "{part}\n{}", said.out);
     }
-    let words = ["compare-walks", "a.csv", "b.csv", "--paired", "--format", "json", "--points", "points.csv"];
+    let words =
+        ["gait", "compare", "a.csv", "b.csv", "--paired", "--format", "json", "--points", "points.csv"];
     let said = place.call(&words);
     let json = said.json();
     let schema: Value = serde_json::from_str(include_str!("../../docs/schema/walks.schema.json")).unwrap();
@@ -44,9 +45,9 @@ fn two_sets_are_compared_as_text_json_and_points() {
     assert_eq!(points.lines().count(), 1 + 2 * 504);
     let again = place.call(&words);
     assert_eq!((again.code, again.out), (said.code, said.out), "the same seed gives the same bytes");
-    let other = place.call(&["compare-walks", "a.csv", "b.csv", "--seed", "1", "--format", "json"]).json();
+    let other = place.call(&["gait", "compare", "a.csv", "b.csv", "--seed", "1", "--format", "json"]).json();
     assert_ne!(other["all"]["cloud_m"]["halves_of_a"], json["all"]["cloud_m"]["halves_of_a"]);
-    let said = place.call(&["compare-walks", "a.csv", "b.csv", "-o", "c.txt"]);
+    let said = place.call(&["gait", "compare", "a.csv", "b.csv", "-o", "c.txt"]);
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""));
     assert!(place.path("c.txt").is_file());
 }
@@ -79,7 +80,7 @@ fn tables_that_are_wrong_have_a_code_and_a_place() {
         (&["latin.csv", "a.csv"], &["error[E0", "latin.csv", "UTF-8"]),
         (&["a.csv", "a.csv", "-o", "a.csv"], &["error[E0920]: ", "overwrite"]),
     ] {
-        let said = place.call(&[&["compare-walks"], words].concat());
+        let said = place.call(&[&["gait", "compare"], words].concat());
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}\n{}", said.err);
         for part in parts {
             assert!(said.err.contains(part), "{part} of {words:?}\n{}", said.err);

@@ -14,19 +14,20 @@ fn options_with_numbers_speak_of_numbers() {
     for (words, wanted) in [
         ("check a.scn a.bltl --seed -1", "`-1` is not a whole number"),
         ("check a.scn a.bltl --seed 1.5", "`1.5` is not a whole number"),
-        ("check a.scn a.bltl -j many", "must be a whole number from 0 (got `many`)"),
+        ("check a.scn a.bltl -j many", "write a number from 1, or remove the option to use all cores"),
         ("check a.scn a.bltl --shards 0", "must be a whole number from 1 to 4294967295 (got `0`)"),
         ("walk a.scn -n -3", "`-3` is not a whole number"),
         ("simulate a.scn --every x", "`x` is not a whole number"),
         ("gait sample a.gait -n 0", "must be a whole number from 1 to 10000000 (got `0`)"),
         ("gait score a.bvh --folds 1e9", "must be a whole number from 0 (got `1e9`)"),
-        ("infer a.csv --fps fast", "must be a number (got `fast`)"),
-        ("evaluate a.scn a.bltl --replay r --speed -", "must be a number (got `-`)"),
+        ("infer a.csv --fps fast", "write a number a second, above 0 and at most 1e6"),
+        ("evaluate a.scn a.bltl --tracks r --speed -", "must be a number (got `-`)"),
         ("path --shape L3 --profiles -2", "a whole number from 0 to 10000"),
     ] {
         let said = place.call(&words.split(' ').collect::<Vec<_>>());
         assert_eq!(said.code, Some(2), "{words}");
         assert!(said.err.contains(wanted), "{words}\n{}", said.err);
+        assert!(said.err.contains("error[E0705]: ") && said.err.contains("help: "), "{words}\n{}", said.err);
         for foreign in ["invalid digit", "invalid float", "..=", "use '--"] {
             assert!(!said.err.contains(foreign), "{words}\n{}", said.err);
         }
@@ -39,19 +40,11 @@ fn options_with_numbers_speak_of_numbers() {
 }
 
 #[test]
-fn an_option_of_another_command_is_named() {
+fn an_option_that_is_misspelt_is_named() {
     let place = place();
-    for (words, wanted) in [
-        ("fit a.scn --replay r --parameters tau", "'--tracks'"),
-        ("monitor a.scn a.bltl --tracks r", "'--replay'"),
-        ("advise a.scn a.bltl --tracks r", "'--replay'"),
-        ("check a.scn a.bltl --sede 3", "'--seed'"),
-    ] {
-        let said = place.call(&words.split(' ').collect::<Vec<_>>());
-        assert_eq!(said.code, Some(2), "{words}");
-        assert!(said.err.contains(&format!("exists: {wanted}")), "{words}\n{}", said.err);
-        assert!(!said.err.contains("as a value"), "{}", said.err);
-    }
+    let said = place.call(&["check", "a.scn", "a.bltl", "--sede", "3"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("exists: '--seed'") && !said.err.contains("as a value"), "{}", said.err);
     let said = place.call(&["check", "a.scn", "--wobble"]);
     assert!(said.err.contains("'--wobble'") && !said.err.contains("as a value"), "{}", said.err);
 }

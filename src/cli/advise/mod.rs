@@ -4,7 +4,7 @@ mod replay;
 mod stream;
 
 use super::terminal::{Colors, print_to_reader};
-use super::values::{Model, parse_count, parse_duration, parse_moment, parse_velocity, threads};
+use super::values::{Cores, Model, parse_count, parse_duration, parse_moment, threads};
 use super::{complaint, inputs, output, page};
 use crate::advise::{Adviser, Advising, role};
 use crate::data::tracks::{Batch, Velocity};
@@ -34,16 +34,16 @@ pub(super) fn run(arguments: &AdviseCommand, colors: Colors) -> Exit {
 
 /// Answers all batches.
 fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<Exit, Diagnostic> {
-    let replayed = arguments.replay.as_ref();
+    let replayed = arguments.tracks.as_ref();
     if let (None, Some(path)) = (replayed, &arguments.report) {
         let hint = format!(
-            "declare `tracks lidar = observations \"obs.jsonl\"` in the scenario, and use `--replay lidar --report {}`",
+            "declare `tracks lidar = observations \"obs.jsonl\"` in the scenario, and use `--tracks lidar --report {}`",
             path.display()
         );
         return Err(complaint::argument("`--report` needs a recording, and a live stream is none", hint));
     }
     let role = role(&parsed.scenario)?;
-    let threads = threads(arguments.threads)?;
+    let threads = threads(arguments.cores.threads)?;
     let recording = replayed.map(|name| replay::batches(parsed, name, arguments)).transpose()?;
     let options = Advising {
         seed: arguments.seed,
@@ -102,7 +102,7 @@ impl Caller<'_> {
             let place = found.cycle as usize % self.late.len();
             self.late[place] = started.elapsed().saturating_sub(limit);
         }
-        let line = advice::line(&found, self.arguments.velocity, started.elapsed().as_secs_f64() * 1e3);
+        let line = advice::line(&found, self.arguments.velocity(), started.elapsed().as_secs_f64() * 1e3);
         if self.arguments.report.is_some() {
             self.shown.cycles.push(found);
         }
@@ -111,7 +111,7 @@ impl Caller<'_> {
 
     /// Whether velocities are differences of positions.
     fn sees(&self) -> bool {
-        self.arguments.velocity == Velocity::Seen
+        self.arguments.velocity() == Velocity::Seen
     }
 }
 
@@ -130,19 +130,19 @@ pub(in crate::cli) struct AdviseCommand {
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) only: Option<String>,
     /// Replay these tracks of the model instead of reading batches from standard input.
-    #[arg(long, value_name = "TRACKS")]
-    pub(in crate::cli) replay: Option<String>,
+    #[arg(long, alias = "replay", value_name = "TRACKS")]
+    pub(in crate::cli) tracks: Option<String>,
     /// First time of the replay; the beginning by default.
-    #[arg(long, value_name = "TIME", requires = "replay", value_parser = parse_moment)]
+    #[arg(long, value_name = "TIME", requires = "tracks", value_parser = parse_moment)]
     pub(in crate::cli) from: Option<f64>,
     /// Last time of the replay; the end by default.
-    #[arg(long, value_name = "TIME", requires = "replay", value_parser = parse_moment)]
+    #[arg(long, value_name = "TIME", requires = "tracks", value_parser = parse_moment)]
     pub(in crate::cli) to: Option<f64>,
     /// Withhold the ids of all people but the user.
-    #[arg(long, requires = "replay")]
+    #[arg(long, requires = "tracks")]
     pub(in crate::cli) anonymous: bool,
     /// Let the user walk as advised instead of as recorded, and compare both at the end.
-    #[arg(long, requires = "replay")]
+    #[arg(long, requires = "tracks")]
     pub(in crate::cli) follow: bool,
     /// Also write a self-contained HTML page that plays the recording, with the advice of each cycle.
     #[arg(long, value_name = "FILE.html")]
@@ -153,9 +153,6 @@ pub(in crate::cli) struct AdviseCommand {
     /// Leave out people who are farther from the user than this, in metres: `12m`.
     #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
     pub(in crate::cli) range: Option<f64>,
-    /// Velocities: `seen` (the difference from the last position) or `recorded` (as observed).
-    #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
-    pub(in crate::cli) velocity: Velocity,
     /// Time from a complete batch to its advice, such as `100ms`. What is certified by then is said.
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
     pub(in crate::cli) deadline: Option<Duration>,
@@ -165,12 +162,19 @@ pub(in crate::cli) struct AdviseCommand {
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(in crate::cli) seed: u64,
-    /// Number of threads; all cores by default. Never changes a result.
-    #[arg(short = 'j', long)]
-    pub(in crate::cli) threads: Option<usize>,
+    /// Threads.
+    #[command(flatten)]
+    pub(in crate::cli) cores: Cores,
     /// Stop at the first line that cannot be read.
     #[arg(long)]
     pub(in crate::cli) strict: bool,
+}
+
+impl AdviseCommand {
+    /// Which velocities are used.
+    fn velocity(&self) -> Velocity {
+        self.model.velocity.unwrap_or(Velocity::Seen)
+    }
 }
 
 /// A length in metres: `12m`, `12`.

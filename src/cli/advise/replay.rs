@@ -18,7 +18,7 @@ pub(super) fn batches(
     arguments: &AdviseCommand,
 ) -> Result<Vec<Batch>, Diagnostic> {
     let file = source(&parsed.scenario, &parsed.files, name)?;
-    let found = file.format.read_batches(file.bytes, &file.reading, arguments.velocity);
+    let found = file.format.read_batches(file.bytes, &file.reading, arguments.velocity());
     let batches = found.map_err(|errors| {
         let first = errors.first().map_or(String::new(), ToString::to_string);
         error!(E0702, file.place, "the recording cannot be read").label(first)

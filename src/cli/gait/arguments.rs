@@ -21,6 +21,8 @@ pub(in crate::cli) enum GaitCommand {
     Sample(SampleCommand),
     /// Measure how well a gait predicts steps that it was not learned from.
     Score(ScoreCommand),
+    /// Compare two sets of recorded or simulated walks.
+    Compare(CompareCommand),
 }
 
 /// Motion capture, and how it is read.
@@ -204,6 +206,42 @@ pub(in crate::cli) struct ScoreCommand {
     /// Format of the scores.
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     pub(super) format: TextFormat,
+}
+
+/// `smc gait compare`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct CompareCommand {
+    /// The first set, such as recorded walks: a CSV file with the columns `walk`, `t` (s), `x` and `y` (m), and perhaps
+    /// `leg`; `-` for standard input.
+    #[arg(value_name = "A.csv")]
+    pub(super) first: String,
+    /// The second set, such as simulated walks.
+    #[arg(value_name = "B.csv")]
+    pub(super) second: String,
+    /// Walks with the same name belong together: also test whether they differ (Wilcoxon).
+    #[arg(long)]
+    pub(super) paired: bool,
+    /// Also write the distance of each point to the nearest one of the other set.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) points: Option<PathBuf>,
+    /// Seed of permutations, resamples and halves.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Format of the comparison.
+    #[arg(long, value_enum, default_value_t = WalksFormat::Text)]
+    pub(super) format: WalksFormat,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// Formats of `smc gait compare`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum WalksFormat {
+    /// For people.
+    Text,
+    /// One object; see docs/schema/walks.schema.json.
+    Json,
 }
 
 /// One of some values by its name.

@@ -1,6 +1,7 @@
-//! `smc gait`: steps of motion capture, and gaits that are learned from them.
+//! `smc gait`: steps of motion capture, gaits that are learned from them, and walks beside walks.
 
 mod arguments;
+mod compare;
 mod learn;
 mod takes;
 
@@ -32,6 +33,7 @@ pub(super) fn run(command: &GaitCommand, colors: Colors) -> Exit {
         GaitCommand::Show(command) => show(command),
         GaitCommand::Sample(command) => sample(command),
         GaitCommand::Score(command) => learn::score(command, colors),
+        GaitCommand::Compare(command) => return compare::run(command, colors),
     };
     complaint::end(done.map(|()| Exit::Success), &[], colors)
 }

@@ -1,7 +1,7 @@
 //! From files of motion capture to takes cut into steps, with every error at its place.
 
 use super::arguments::Reading;
-use crate::cli::compare_walks::{SHOWN, span};
+use super::compare::{SHOWN, span};
 use crate::cli::{complaint, inputs};
 use crate::data::mocap::{Asf, Layout, NO_RATE, Take, TakeRow, Up, read_take_table, read_takes};
 use crate::data::tracks::LineError;

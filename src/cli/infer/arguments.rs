@@ -1,6 +1,6 @@
 //! The options of `smc infer`.
 
-use crate::cli::values::{parse_moment, parse_velocity};
+use crate::cli::values::{parse_above_zero, parse_moment, parse_rate, parse_velocity};
 use crate::data::tracks::{Format, Velocity};
 use crate::perception::Padding;
 use clap::{Args, ValueEnum};
@@ -15,7 +15,7 @@ pub(in crate::cli) struct InferCommand {
     #[arg(long = "input", value_name = "FORMAT", value_parser = parse_format)]
     pub(super) input: Option<&'static Format>,
     /// Frames per second of a table with frames.
-    #[arg(long, value_name = "RATE")]
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(super) fps: Option<f64>,
     /// The trial of a table with several.
     #[arg(long, value_name = "N")]
@@ -54,13 +54,13 @@ pub(in crate::cli) struct InferCommand {
     #[arg(long, value_name = "TIME", default_value = "2s", value_parser = parse_moment)]
     pub(super) projection: f64,
     /// Largest distance of an observation from the projection of its trace, m.
-    #[arg(long, value_name = "METRES", default_value_t = 0.9)]
+    #[arg(long, value_name = "METRES", default_value = "0.9", value_parser = parse_above_zero)]
     pub(super) threshold: f64,
     /// Largest distance of a member from the centroid of its group, m.
-    #[arg(long, value_name = "METRES", default_value_t = 0.5)]
+    #[arg(long, value_name = "METRES", default_value = "0.5", value_parser = parse_above_zero)]
     pub(super) cohesion: f64,
     /// What positions and velocities are divided by in groups.
-    #[arg(long, num_args = 2, value_names = ["POSITION", "VELOCITY"], default_values_t = [2.0, 1.0])]
+    #[arg(long, num_args = 2, value_names = ["POSITION", "VELOCITY"], default_values = ["2", "1"], value_parser = parse_above_zero)]
     pub(super) discount: Vec<f64>,
     /// Seed of the clustering.
     #[arg(long, default_value_t = 0)]

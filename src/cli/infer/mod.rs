@@ -31,15 +31,8 @@ pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
 }
 
 fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnostic>> {
-    let positive = [arguments.projection, arguments.threshold, arguments.cohesion];
-    let divides = arguments.discount.iter().chain(&positive);
-    if divides.copied().any(|value| !(value > 0.0 && value.is_finite())) {
-        let said = "`--projection`, `--threshold`, `--cohesion` and `--discount` must be positive";
-        return Err(complaint::argument(said, "write a positive number").into());
-    }
-    if let Some(fps) = arguments.fps.filter(|fps| !(*fps > 0.0 && *fps <= 1e6)) {
-        let said = format!("`--fps` must be above 0 and at most 1e6 (got {fps})");
-        return Err(complaint::argument(said, "write a number of frames a second, such as 25").into());
+    if !(arguments.projection > 0.0 && arguments.projection.is_finite()) {
+        return Err(complaint::argument("`--projection` must be positive", "write a time, such as 2s").into());
     }
     let named = [Some(&arguments.tracks), arguments.annotated.as_ref(), arguments.scene.as_ref()];
     if named.into_iter().flatten().filter(|name| *name == "-").count() > 1 {

@@ -84,7 +84,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
             seed: key.seed,
             list: &mut list,
             last: scenario.horizon,
-            replay: page::line(&model, None).simulate(&[], key.seed, key.index),
+            replay: page::line(&model).simulate(&[], key.seed, key.index),
         };
         if trials.write(path, colors) != Exit::Success {
             return Err(nothing());

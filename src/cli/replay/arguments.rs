@@ -1,7 +1,6 @@
 //! The options of `smc monitor`, `smc evaluate` and `smc fit`.
 
-use crate::cli::values::{Model, parse_count, parse_duration, parse_moment, parse_share, parse_velocity};
-use crate::data::tracks::Velocity;
+use crate::cli::values::{Cores, Model, parse_count, parse_duration, parse_moment, parse_share};
 use crate::replay::{Beyond, Whose};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -17,8 +16,8 @@ pub(in crate::cli) struct Replayed {
     #[arg(required = true)]
     pub(super) properties: Vec<String>,
     /// Tracks of the model.
-    #[arg(long, value_name = "TRACKS")]
-    pub(super) replay: String,
+    #[arg(long, alias = "replay", value_name = "TRACKS")]
+    pub(super) tracks: String,
     /// Time between two instants; the step of the recording by default.
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
     pub(super) every: Option<Duration>,
@@ -41,9 +40,9 @@ pub(in crate::cli) struct Span {
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
-    /// Number of threads; all cores by default. Never changes a result.
-    #[arg(short = 'j', long)]
-    pub(super) threads: Option<usize>,
+    /// Threads.
+    #[command(flatten)]
+    pub(super) cores: Cores,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
@@ -64,9 +63,6 @@ pub(in crate::cli) struct MonitorCommand {
     /// Whose instants: an id, or `all` for everybody in turn; by default the user of the model.
     #[arg(long, value_name = "ID", value_parser = parse_user)]
     pub(super) user: Option<Whose>,
-    /// Velocities: `recorded` (as in the file) or `seen` (the difference from the last position).
-    #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
-    pub(super) velocity: Velocity,
     /// What is taken of others after the end of their tracks.
     #[arg(long, value_enum, default_value_t = Beyond::Unresolved)]
     pub(super) beyond: Beyond,
@@ -96,9 +92,6 @@ pub(in crate::cli) struct EvaluateCommand {
     /// Whoever was recorded slower than this, in m/s, is left out.
     #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
     pub(super) speed: f64,
-    /// Velocities: `seen` (the difference from the last position) or `recorded` (as in the file).
-    #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
-    pub(super) velocity: Velocity,
     /// What is taken of others after the end of their tracks.
     #[arg(long, value_enum, default_value_t = Beyond::Onward)]
     pub(super) beyond: Beyond,
@@ -149,9 +142,6 @@ pub(in crate::cli) struct FitCommand {
     /// Whoever was recorded slower than this, in m/s, is left out.
     #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
     pub(super) speed: f64,
-    /// Velocities: `seen` (the difference from the last position) or `recorded` (as in the file).
-    #[arg(long, value_name = "WHICH", default_value = "seen", value_parser = parse_velocity)]
-    pub(super) velocity: Velocity,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = FitFormat::Text)]
     pub(super) format: FitFormat,
@@ -166,7 +156,7 @@ impl FitCommand {
         Replayed {
             model: self.model.clone(),
             properties: self.by.clone(),
-            replay: self.tracks.clone(),
+            tracks: self.tracks.clone(),
             every: Some(self.every),
             span: self.span.clone(),
         }

@@ -4,6 +4,7 @@ use super::arguments::{EvaluateCommand, EvaluateFormat};
 use super::{Call, Exit};
 use crate::cli::terminal::Colors;
 use crate::cli::{complaint, output};
+use crate::data::tracks::Velocity;
 use crate::gait;
 use crate::model::Scenario;
 use crate::replay::{
@@ -23,7 +24,7 @@ use std::collections::BTreeMap;
 /// Runs the command.
 pub(in crate::cli) fn run(arguments: &EvaluateCommand, colors: Colors) -> Exit {
     let work = |call: &Call| text(arguments, call);
-    super::run(&arguments.replayed, (arguments.velocity, arguments.user), colors, work)
+    super::run(&arguments.replayed, (Velocity::Seen, arguments.user), colors, work)
 }
 
 fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {

@@ -25,7 +25,7 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Runs the command.
 pub(in crate::cli) fn run(arguments: &FitCommand, colors: Colors) -> Exit {
     let work = |call: &Call| text(arguments, call);
-    let exit = super::run(&arguments.replayed(), (arguments.velocity, Whose::Everybody), colors, work);
+    let exit = super::run(&arguments.replayed(), (Velocity::Seen, Whose::Everybody), colors, work);
     let is_early = exit == Exit::Success && INTERRUPTED.load(Ordering::Relaxed);
     if is_early { Exit::Interrupted } else { exit }
 }
@@ -160,7 +160,7 @@ fn tested(
             |error: Diagnostic| Diagnostic::placeless(error.code, format!("{scenario}: {}", error.title));
         errors.into_iter().map(one).collect::<Vec<_>>()
     };
-    let velocity: Velocity = arguments.velocity;
+    let velocity = arguments.model.velocity.unwrap_or(Velocity::Seen);
     let replay = Replay::new(&input, &tracks, velocity, Whose::Everybody).map_err(placeless)?;
     let replay = match &arguments.kind {
         Some(kind) => replay.with_kind(kind).map_err(placeless)?,

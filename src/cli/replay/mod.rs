@@ -38,7 +38,7 @@ struct Call {
 /// Reads what a call names and does the work.
 fn run(
     replayed: &Replayed,
-    (velocity, whose): (Velocity, Whose),
+    (usual, whose): (Velocity, Whose),
     colors: Colors,
     work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
 ) -> Exit {
@@ -46,7 +46,7 @@ fn run(
         return Exit::Wrong;
     };
     let mut sources = parsed.inputs.sources.clone();
-    let done = replay(&parsed, &paths, replayed, (velocity, whose), &mut sources, work);
+    let done = replay(&parsed, &paths, replayed, (usual, whose), &mut sources, work);
     complaint::end(done.map(|()| Exit::Success), &sources, colors)
 }
 
@@ -55,13 +55,14 @@ fn replay(
     parsed: &Parsed,
     paths: &[PathBuf],
     replayed: &Replayed,
-    (velocity, whose): (Velocity, Whose),
+    (usual, whose): (Velocity, Whose),
     sources: &mut Vec<Source>,
     work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
 ) -> Result<(), Vec<Diagnostic>> {
     output::guard(replayed.span.output.as_deref(), paths)?;
-    let threads = threads(replayed.span.threads)?;
-    let replay = Replay::new(&parsed.input(), &replayed.replay, velocity, whose)?;
+    let threads = threads(replayed.span.cores.threads)?;
+    let velocity = replayed.model.velocity.unwrap_or(usual);
+    let replay = Replay::new(&parsed.input(), &replayed.tracks, velocity, whose)?;
     let every = replayed.every.map_or(replay.recording.step(), |every| every.as_secs_f64());
     let instants = replay.instants(every, replayed.span.between());
     if instants.is_empty() {

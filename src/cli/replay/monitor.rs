@@ -4,6 +4,7 @@ use super::arguments::{MonitorCommand, MonitorFormat};
 use super::{Call, Exit};
 use crate::cli::output;
 use crate::cli::terminal::Colors;
+use crate::data::tracks::Velocity;
 use crate::replay::{Whose, monitor};
 use crate::report::monitor::{
     InstantVerdict, Monitored, MonitoredInstant, MonitoredProperty, to_json, to_text, write_csv,
@@ -14,7 +15,7 @@ use crate::syntax::diagnostic::Diagnostic;
 pub(in crate::cli) fn run(arguments: &MonitorCommand, colors: Colors) -> Exit {
     let whose = arguments.user.unwrap_or(Whose::Written);
     let work = |call: &Call| text(arguments, call);
-    super::run(&arguments.replayed, (arguments.velocity, whose), colors, work)
+    super::run(&arguments.replayed, (Velocity::Recorded, whose), colors, work)
 }
 
 fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnostic>> {

@@ -33,10 +33,6 @@ use std::sync::atomic::Ordering;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
-    if let Err(error) = checked(arguments) {
-        complaint::tell(&error, &[], colors);
-        return Exit::Wrong;
-    }
     let Some((study, inputs::Loaded { inputs, paths })) =
         inputs::load_or_tell(&arguments.model, &arguments.properties, colors)
     else {
@@ -46,20 +42,6 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Destination::new(arguments.format, arguments.output.as_deref(), arguments.report.as_deref(), &paths);
     let done = destination.and_then(|to| simulate(arguments, study, &to, &inputs.sources, colors));
     complaint::end(done, &inputs.sources, colors)
-}
-
-/// Whether the numbers of a call are possible.
-fn checked(arguments: &Simulate) -> Result<(), Diagnostic> {
-    if arguments.every == 0 || arguments.trials == 0 {
-        let option = if arguments.every == 0 { "--every" } else { "--trials" };
-        let title = format!("`{option}` must be positive (got 0)");
-        return Err(complaint::argument(title, "write a number from 1"));
-    }
-    if arguments.trial.saturating_add(arguments.trials) > MOST_TRIALS {
-        let hint = format!("trials are numbered from 0 to {}", MOST_TRIALS - 1);
-        return Err(complaint::argument("the trial number is out of range", hint));
-    }
-    Ok(())
 }
 
 /// The last tick that is written.
@@ -93,6 +75,11 @@ fn simulate(
     sources: &[Source],
     colors: Colors,
 ) -> Result<Exit, Diagnostic> {
+    let (trials, every) = (arguments.trials.get(), arguments.every.get());
+    if arguments.trial.saturating_add(trials) > MOST_TRIALS {
+        let hint = format!("trials are numbered from 0 to {}", MOST_TRIALS - 1);
+        return Err(complaint::argument("the trial number is out of range", hint));
+    }
     let target = arguments.keep.as_ref().map(|keep| keep.target(&study)).transpose()?;
     if target.is_none() && study.worlds.len() > 2 {
         return Err(complaint::argument("a trace cannot be written for a sweep", "write `--set name=value`"));
@@ -108,7 +95,7 @@ fn simulate(
     placeable(world).map_err(|fault| library::refusal(&fault))?;
     let last = last(&scenario, arguments.until)?;
     let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
-    let all = arguments.trial..arguments.trial + arguments.trials;
+    let all = arguments.trial..arguments.trial + trials;
     let chosen = match (&arguments.keep, target) {
         (Some(keep), Some(target)) => {
             let Some(prepared) = PreparedWorld::of(&study, number, arguments.seed, &drivers) else {
@@ -117,7 +104,7 @@ fn simulate(
             let items = all.map(|index| Item { advice, index });
             let (kept, unresolved) = keep.judge(&prepared, target.column, arguments.seed, items)?;
             if !arguments.quiet {
-                warn(&keep.told(arguments.trials, kept.len(), unresolved));
+                warn(&keep.told(trials, kept.len(), unresolved));
             }
             Chosen::Kept(kept)
         }
@@ -126,9 +113,9 @@ fn simulate(
     let program = Program::driven(scenario.clone(), drivers(&scenario, arguments.seed));
     let mut exit = Exit::Success;
     if let Some(path) = &arguments.report {
-        let Simulate { seed, trial, trials: count, .. } = *arguments;
+        let Simulate { seed, trial, .. } = *arguments;
         let option = arguments.advice.as_ref().map_or(String::new(), |name| format!(" --move '{name}'"));
-        let line = page::line(&arguments.model, arguments.velocity).simulate(&[], seed, trial);
+        let line = page::line(&arguments.model).simulate(&[], seed, trial);
         let page = Trials {
             program: &program,
             scenario: &arguments.model.scenario,
@@ -136,7 +123,7 @@ fn simulate(
             seed,
             list: &mut chosen.clone().trials().map(|index| (index, advice)),
             last,
-            replay: format!("{line} -n {count}{option}"),
+            replay: format!("{line} -n {trials}{option}"),
         };
         exit = page.write(path, colors);
         if arguments.output.is_none() || exit != Exit::Success {
@@ -144,7 +131,7 @@ fn simulate(
         }
     }
     let files = destination.files(&scenario, chosen)?;
-    let mut rows = Rows::new(&program, (arguments.seed, arguments.every), advice, last);
+    let mut rows = Rows::new(&program, (arguments.seed, every), advice, last);
     if arguments.output.is_some() {
         // The file gets its name only when it is complete: the first signal ends the table, the second one the process.
         let interrupted = Arc::clone(&rows.interrupted);
@@ -154,7 +141,7 @@ fn simulate(
             }
         });
     }
-    let table = rows::table(&scenario, arguments.seed, arguments.every);
+    let table = rows::table(&scenario, arguments.seed, every);
     for part in files {
         if rows.is_interrupted() {
             break;
@@ -168,8 +155,8 @@ fn simulate(
             break;
         }
     }
-    if let (trials, Some(first)) = rows.shrunk {
-        warn(&format!("warning: {}\n", smaller(&program, first, trials)));
+    if let (shrunk, Some(first)) = rows.shrunk {
+        warn(&format!("warning: {}\n", smaller(&program, first, shrunk)));
     }
     for note in &rows.notes {
         warn(&format!("warning: {note}\n"));

@@ -4,10 +4,10 @@ mod trials;
 
 use super::page::Trials;
 use super::terminal::{Colors, warn};
-use super::values::{Limit, Model, threads};
+use super::values::{Cores, Limit, Model, parse_rate, parse_trials, threads};
 use super::{complaint, inputs, output, page};
 use crate::base::geometry::Vec2;
-use crate::base::random::{MOST_TRIALS, TrialKey};
+use crate::base::random::TrialKey;
 use crate::base::visible::visible;
 use crate::engine::traces::FIRST;
 use crate::engine::{placeable, smaller};
@@ -21,6 +21,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Source;
 use crate::{gait, library};
 use clap::{Args, ValueEnum};
+use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::sync::Arc;
 use trials::Task;
@@ -33,30 +34,13 @@ pub(super) fn run(arguments: &WalkCommand, colors: Colors) -> Exit {
     };
     let Some(world) = study.worlds.get(study.base) else { return Exit::Wrong };
     let sweep = || complaint::argument("walks cannot be written for a sweep", "write `--set name=value`");
-    let done = checked(arguments)
-        .and_then(|()| if study.worlds.len() > 2 { Err(sweep()) } else { Ok(()) })
+    let done = if study.worlds.len() > 2 { Err(sweep()) } else { Ok(()) };
+    let done = done
         .and_then(|()| output::guard(arguments.output.as_deref(), &paths))
         .and_then(|()| output::guard(arguments.report.as_deref(), &paths))
         .and_then(|()| placeable(world).map_err(|fault| library::refusal(&fault)))
         .and_then(|()| walk(arguments, Arc::clone(&world.scenario), (&inputs.sources, colors)));
     complaint::end(done, &inputs.sources, colors)
-}
-
-/// Whether the numbers of a call are possible.
-fn checked(arguments: &WalkCommand) -> Result<(), Diagnostic> {
-    let WalkCommand { trials, threads, fps, .. } = arguments;
-    let (title, hint) = if !(1..=MOST_TRIALS).contains(trials) {
-        let hint = format!("write a number from 1 to {MOST_TRIALS}");
-        (format!("`--trials` is out of range (got {trials})"), hint)
-    } else if *threads == Some(0) {
-        ("`--threads` must be positive (got 0)".to_owned(), "write a number from 1".to_owned())
-    } else if !(*fps > 0.0 && *fps <= 1e6) {
-        let title = format!("`--fps` must be above 0 and at most 1e6 (got {fps})");
-        (title, "write a number of rows a second, such as 120".to_owned())
-    } else {
-        return Ok(());
-    };
-    Err(complaint::argument(title, hint))
 }
 
 /// Runs the trials and writes what they gave.
@@ -69,17 +53,17 @@ fn walk(
     library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
     let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
     let agents = chosen(&program, &arguments.agent)?;
-    let threads = threads(arguments.threads)?;
+    let threads = threads(arguments.cores.threads)?;
     let task = Task {
         program: &program,
         seed: arguments.seed,
-        trials: arguments.trials,
+        trials: arguments.trials.get(),
         agents: agents.iter().map(|k| (*k, scenario.agents[*k].route.goals().count())).collect(),
         keeps_places: matches!(arguments.format, WalkFormat::Traces | WalkFormat::Svg),
     };
     let mut walked = Walked {
         title: scenario.title.clone(),
-        trials: arguments.trials,
+        trials: arguments.trials.get(),
         seed: arguments.seed,
         dt: scenario.clock.step_seconds(),
         legs: agents.iter().flat_map(|agent| legs_of(&scenario, &scenario.agents[*agent])).collect(),
@@ -100,8 +84,8 @@ fn walk(
     }
     write(arguments, &scenario, &walked)?;
     if let Some(path) = &arguments.report {
-        let trials = arguments.trials.min(FIRST);
-        let line = page::line(&arguments.model, None).simulate(&[], arguments.seed, 0);
+        let trials = arguments.trials.get().min(FIRST);
+        let line = page::line(&arguments.model).simulate(&[], arguments.seed, 0);
         let trials = Trials {
             program: &program,
             scenario: &arguments.model.scenario,
@@ -221,19 +205,19 @@ pub(in crate::cli) struct WalkCommand {
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) agent: Vec<String>,
     /// Number of trials.
-    #[arg(short = 'n', long, default_value_t = 100, value_name = "N")]
-    pub(in crate::cli) trials: u64,
+    #[arg(short = 'n', long, default_value = "100", value_name = "N", value_parser = parse_trials)]
+    pub(in crate::cli) trials: NonZeroU64,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 0)]
     pub(in crate::cli) seed: u64,
-    /// Number of threads; all cores by default. Never changes a result.
-    #[arg(short = 'j', long)]
-    pub(in crate::cli) threads: Option<usize>,
+    /// Threads.
+    #[command(flatten)]
+    pub(in crate::cli) cores: Cores,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = WalkFormat::Text)]
     pub(in crate::cli) format: WalkFormat,
     /// Rows of a trace for each second.
-    #[arg(long, default_value_t = 120.0, value_name = "RATE")]
+    #[arg(long, default_value = "120", value_name = "RATE", value_parser = parse_rate)]
     pub(in crate::cli) fps: f64,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]

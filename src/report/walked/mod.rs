@@ -225,7 +225,7 @@ pub fn draw(scenario: &Scenario, walked: &Walked) -> String {
     drawing.finish(if walked.title.is_empty() { "walks" } else { &walked.title })
 }
 
-// Traces of walks as `smc compare-walks` reads them, at any rate: between two states the line between them.
+// Traces of walks as `smc gait compare` reads them, at any rate: between two states the line between them.
 
 /// Rows nearer to the end of a walk than this give way to the end, s.
 const NEAR: f64 = 1e-5;

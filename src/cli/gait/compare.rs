@@ -1,11 +1,9 @@
-//! `smc compare-walks`: are two sets of recorded or simulated walks alike?
+//! `smc gait compare`: are two sets of recorded or simulated walks alike?
 
-use super::arguments::{CompareWalks, WalksFormat};
-use super::complaint;
-use super::inputs;
-use super::output;
-use super::terminal::Colors;
+use super::arguments::{CompareCommand, WalksFormat};
 use crate::base::visible::visible;
+use crate::cli::terminal::Colors;
+use crate::cli::{complaint, inputs, output};
 use crate::data::tracks::LineError;
 use crate::data::walks::{Walk, read_walks};
 use crate::gait::compare::{compare, has_pairs};
@@ -24,13 +22,13 @@ const HINT: &str = "write a table with the columns `walk,t,x,y`, perhaps `leg`: 
                     point, at least two walks";
 
 /// Runs the command.
-pub(super) fn run(arguments: &CompareWalks, colors: Colors) -> Exit {
+pub(super) fn run(arguments: &CompareCommand, colors: Colors) -> Exit {
     let mut sources = Vec::new();
     let done = answer(arguments, &mut sources);
     complaint::end(done.map(|()| Exit::Success), &sources, colors)
 }
 
-fn answer(arguments: &CompareWalks, sources: &mut Vec<Source>) -> Result<(), Vec<Diagnostic>> {
+fn answer(arguments: &CompareCommand, sources: &mut Vec<Source>) -> Result<(), Vec<Diagnostic>> {
     let files = [&arguments.first, &arguments.second];
     if files.iter().all(|file| *file == "-") {
         return Err(complaint::input("standard input can be read only once").into());
