@@ -3,8 +3,8 @@
 
 use smc::compile::study::Query;
 use smc::compile::{Files, Input, Study, compile};
-use smc::engine::executor::{Cells, Job};
 use smc::engine::outcome::{CallResult, Failure, QueryResult};
+use smc::engine::trials::executor::{Cells, Job};
 use smc::engine::{Budget, Call, CommandLine, Executor, Nobody, Threads, run};
 use smc::logic::Invalid;
 use smc::syntax::parse::{parse_properties, parse_scenario};

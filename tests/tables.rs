@@ -115,11 +115,8 @@ fn the_manual_names_every_command_that_writes_a_page() {
         String::from_utf8(output.stdout).unwrap()
     };
     let all = help(&[]);
-    let listed = all.split_once("Commands:\n").unwrap().1.split_once("\n\n").unwrap().0;
-    let names = listed
-        .lines()
-        .filter(|line| !line.starts_with("   "))
-        .filter_map(|line| line.split_whitespace().next());
+    let listed = all.split_once("Options:\n").unwrap().0;
+    let names = listed.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
     let with_pages: Vec<&str> = names.filter(|name| help(&[name]).contains("--report <FILE.html>")).collect();
     assert!(with_pages.len() >= 4, "{with_pages:?}");
     for name in with_pages {

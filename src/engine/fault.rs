@@ -1,6 +1,6 @@
 //! What can go wrong in the engine.
 
-use super::flaw::Flaw;
+use crate::engine::flaw::Flaw;
 use crate::syntax::source::Span;
 use thiserror::Error;
 

@@ -1,53 +1,36 @@
-//! Floor 5: executors, procedures, and the outcomes of queries.
+//! Floor 5: the queries of a call are sampled, and answered.
+//!
+//! ```text
+//! session     a whole call: worlds made ready, queries in groups that share trials, turns in the time that is left
+//!   trials      a world made ready, where everybody can be placed, and executors, which run items and hand back cells
+//!   sampling    procedures on their way: checks and estimates, comparisons, rankings, splitting; pilots and forecasts
+//!   answer      what was found, as numbers and sentences
+//!   witness     the trials that show it, and what decided them
+//!   outcome     all that as plain data, for reports
+//!   traces      trials run again for pages
+//!   shards      the same work on other machines
+//! ```
 
 mod answer;
-mod blame;
 mod call;
-mod cause;
-mod checkpoints;
-mod compare;
-mod culprits;
-mod decider;
-mod entry;
-mod estimate;
-mod every;
-pub mod executor;
 mod fault;
 mod flaw;
-mod forecast;
-pub mod given;
-mod grounds;
-mod least;
-mod method;
 pub mod outcome;
-mod pilot;
-mod placement;
-pub mod prepared;
-mod procedure;
-mod rank;
-mod recall;
-pub mod sample;
+mod sampling;
 mod session;
 pub mod shards;
-mod splitting;
-mod tables;
-mod tally;
-#[cfg(test)]
-mod tests;
 pub mod traces;
-mod trial;
-mod watch;
+pub mod trials;
 mod witness;
-mod words;
 
 pub use crate::trials::budget::Budget;
+pub use answer::words::at_most;
 pub use call::{Call, CommandLine, quoted};
-pub use cause::{divergence, no_start, smaller};
-pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use flaw::Flaw;
-pub use placement::{overfull_starts, placeable};
-pub use prepared::PreparedWorld;
+pub use sampling::watch::{CallForecast, Forecast, Likely, Nobody, Watch};
 pub use session::{forecast, run};
-pub use watch::{CallForecast, Forecast, Likely, Nobody, Watch};
-pub use words::at_most;
+pub use trials::executor::{Executor, Threads};
+pub use trials::placement::{overfull_starts, placeable};
+pub use trials::prepared::PreparedWorld;
+pub use witness::cause::{divergence, no_start, smaller};

@@ -1,24 +1,24 @@
 //! A whole call: worlds made ready, queries put into groups that share trials, forecast, and run.
 
-use super::answer::Answers;
-use super::call::Call;
-use super::compare::{CompareSampling, Sides};
-use super::entry::EstimateEntry;
-use super::estimate::{Advance, EstimateSampling};
-use super::every;
-use super::executor::Executor;
-use super::fault::{Fault, MOST_VALUES};
-use super::flaw::Flaw;
-use super::forecast::PilotStatistics;
-use super::outcome::{CallResult, Failure, QueryResult};
-use super::placement::all_placeable;
-use super::prepared::PreparedWorld;
-use super::procedure::Procedure;
-use super::rank::{RankSampling, RankSetup};
-use super::splitting::Question;
-use super::tally::Tally;
-use super::watch::{CallForecast, Forecast, Watch};
 use crate::compile::study::{Ask, Query, Study};
+use crate::engine::answer::every;
+use crate::engine::answer::{Answers, Running, Sampling, Turn};
+use crate::engine::call::Call;
+use crate::engine::fault::{Fault, MOST_VALUES};
+use crate::engine::flaw::Flaw;
+use crate::engine::outcome::{CallResult, Failure, QueryResult};
+use crate::engine::sampling::compare::{CompareSampling, Sides};
+use crate::engine::sampling::entry::EstimateEntry;
+use crate::engine::sampling::estimate::EstimateSampling;
+use crate::engine::sampling::forecast::PilotStatistics;
+use crate::engine::sampling::procedure::Procedure;
+use crate::engine::sampling::rank::{RankSampling, RankSetup};
+use crate::engine::sampling::splitting::Question;
+use crate::engine::sampling::tally::Tally;
+use crate::engine::sampling::watch::{CallForecast, Forecast, Watch};
+use crate::engine::trials::executor::Executor;
+use crate::engine::trials::placement::all_placeable;
+use crate::engine::trials::prepared::PreparedWorld;
 use crate::stats::Levels;
 use crate::stats::spec::Make;
 use crate::stats::splitting;
@@ -52,36 +52,36 @@ pub fn run(
     let mut levels = Levels::default();
     if budget.has_deadline() {
         // A question about a rare event cannot be paused: it gets its share when the others had theirs.
-        groups.sort_by_key(|group| matches!(group.sampling, Sampling::Split(_)));
+        groups.sort_by_key(|group| group.is_whole());
     }
     let mut waiting: VecDeque<Group<'_>> = groups.into();
     let mut paused = VecDeque::new();
     let mut times = 1;
-    while let Some(group) = waiting.pop_front() {
+    while let Some(mut group) = waiting.pop_front() {
         // Those that are open share the time that is left; what one of them leaves goes to the others, in further turns.
         let parts = ((waiting.len() + 1) / times).max(1);
         let share = budget.share(parts);
-        match session.turn(group, (executor, &mut levels), &share, watch)? {
+        let running = Running { executor, levels: &mut levels, share: &share, watch };
+        match session.turn(&mut group, running)? {
             Turn::Over(found, broken) => {
                 for (k, result) in found {
                     results[k] = Some(result);
                 }
-                if let Some(flaw) = broken {
-                    failure = Some(Failure::Model(flaw));
+                if let Some(fault) = broken {
+                    failure = Some(Failure::Model(flaw(fault)?));
                     break;
                 }
             }
             // With many queries a share may be too short for one trial: then one gets more, before none gets any.
-            Turn::Paused(group) if parts > FEW_PARTS && group.is_unread() => {
+            Turn::Paused if parts > FEW_PARTS && group.is_unread() => {
                 times *= 2;
-                waiting.push_front(*group);
+                waiting.push_front(group);
                 continue;
             }
-            Turn::Paused(group) => paused.push_back(*group),
-            Turn::Apart(both) => {
-                let [fast, slow] = *both;
+            Turn::Paused => paused.push_back(group),
+            Turn::Apart(slow) => {
                 waiting.push_front(slow);
-                waiting.push_front(fast);
+                waiting.push_front(group);
             }
         }
         times = 1;
@@ -90,8 +90,8 @@ pub fn run(
         }
     }
     // What was decided before stays decided.
-    for group in waiting.into_iter().chain(paused) {
-        for (k, result) in session.decided(group)? {
+    for mut group in waiting.into_iter().chain(paused) {
+        for (k, result) in group.decided(&Answers { call, budget })? {
             results[k] = Some(result);
         }
     }
@@ -194,12 +194,7 @@ fn forecast_groups(
         if budget.is_interrupted() {
             return Ok(None);
         }
-        let forecasts = match &mut group.sampling {
-            Sampling::Estimate(estimate) => estimate.run_pilot(executor, budget)?,
-            Sampling::Compare(compare) => vec![compare.run_pilot(executor, budget)?],
-            Sampling::Rank(rank) => vec![rank.run_pilot(executor, budget)?],
-            Sampling::Split(question) => vec![question.run_pilot(executor, budget)?],
-        };
+        let forecasts = group.pilot(executor, budget)?;
         // Checks and estimates of one scenario share their trials.
         let longest = |of: &dyn Fn(&Forecast) -> f64| forecasts.iter().map(of).fold(0.0, f64::max);
         total.seconds += longest(&|f| f.seconds);
@@ -210,32 +205,8 @@ fn forecast_groups(
     Ok(Some(total))
 }
 
-/// Queries that are answered together, by their places among those asked.
-struct Group<'q> {
-    places: Vec<usize>,
-    sampling: Sampling<'q>,
-}
-
-impl Group<'_> {
-    /// Whether no trial was read for it yet.
-    fn is_unread(&self) -> bool {
-        match &self.sampling {
-            Sampling::Estimate(estimate) => estimate.entries.iter().all(|i| i.tally.counts.trials == 0),
-            Sampling::Compare(compare) => compare.is_unread(),
-            Sampling::Rank(rank) => rank.is_unread(),
-            Sampling::Split(_) => true,
-        }
-    }
-}
-
-/// How they are answered.
-#[allow(clippy::large_enum_variant, reason = "there are as many as queries")]
-enum Sampling<'q> {
-    Estimate(EstimateSampling<'q>),
-    Compare(CompareSampling<'q>),
-    Rank(RankSampling<'q>),
-    Split(Question<'q>),
-}
+/// Queries that are answered together, whatever they ask.
+type Group<'q> = Box<dyn Sampling<'q> + 'q>;
 
 fn estimated(ask: &Ask) -> Option<usize> {
     match ask {
@@ -252,23 +223,6 @@ fn refused(query: &Query) -> impl Fn(Fault) -> Fault {
         Fault::Statistics(reason) => Fault::Procedure { place, reason },
         other => other,
     }
-}
-
-/// Results by the places of their queries.
-type Answered = Vec<(usize, QueryResult)>;
-
-/// What came of a turn of a group.
-enum Turn<'q> {
-    /// Its results, and what was wrong with the model, if a trial showed that it is.
-    Over(Answered, Option<Box<Flaw>>),
-    /// It goes on when the others had their turn.
-    Paused(Box<Group<'q>>),
-    /// It goes on in two groups, because the queries of the second hold the others up.
-    Apart(Box<[Group<'q>; 2]>),
-}
-
-fn paused(places: Vec<usize>, sampling: Sampling<'_>) -> Turn<'_> {
-    Turn::Paused(Box::new(Group { places, sampling }))
 }
 
 /// What is wrong with the model, if the fault is one of it.
@@ -301,13 +255,12 @@ impl<'a> Session<'a> {
             if taken[at] {
                 continue;
             }
-            let (places, sampling) = match &query.ask {
+            groups.push(match &query.ask {
                 Ask::Estimate { measure, estimator, level: Some(level) } => {
                     let prepared = self.prepared(measure.target.world)?;
                     let columns = [measure.target.column, *level];
                     let rule = splitting::Rule::of(estimator).ok_or(Fault::Unsuitable)?;
-                    let question = Question::new(query, prepared, columns, rule, self.call.seed);
-                    (vec![at], Sampling::Split(question))
+                    Box::new(Question::new((at, query), prepared, columns, rule, self.call.seed)) as Group<'q>
                 }
                 Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
                     // All checks and estimates of a world read the same trials.
@@ -319,31 +272,28 @@ impl<'a> Session<'a> {
                     }
                     let entries = together
                         .iter()
-                        .map(|&k| self.entry(asked[k]).map_err(refused(asked[k])))
+                        .map(|&k| self.entry(k, asked[k]).map_err(refused(asked[k])))
                         .collect::<Result<Vec<_>, _>>()?;
                     let kept = entries.iter().map(|one| one.procedure.most_values(self.budget.max_trials));
                     let values = kept.fold(0, u64::saturating_add);
                     if values > MOST_VALUES {
                         return Err(Fault::Memory { place: query.span, values });
                     }
-                    let sampling = EstimateSampling::new(self.prepared(world)?, entries, self.call.seed);
-                    (together, Sampling::Estimate(sampling))
+                    Box::new(EstimateSampling::new(self.prepared(world)?, entries, self.call.seed))
                 }
-                Ask::Compare { .. } => {
-                    (vec![at], Sampling::Compare(self.compare(query).map_err(refused(query))?))
-                }
-                Ask::Rank { .. } => (vec![at], Sampling::Rank(self.rank(query).map_err(refused(query))?)),
-            };
-            groups.push(Group { places, sampling });
+                Ask::Compare { .. } => Box::new(self.compare(at, query).map_err(refused(query))?),
+                Ask::Rank { .. } => Box::new(self.rank(at, query).map_err(refused(query))?),
+            });
         }
         Ok(groups)
     }
 
-    fn entry<'q>(&self, query: &'q Query) -> Result<EstimateEntry<'q>, Fault> {
+    fn entry<'q>(&self, place: usize, query: &'q Query) -> Result<EstimateEntry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         Ok(EstimateEntry {
+            place,
             query,
             column: measure.target.column,
             range: measure.kind.range(),
@@ -358,7 +308,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    fn compare<'q>(&self, query: &'q Query) -> Result<CompareSampling<'q>, Fault>
+    fn compare<'q>(&self, place: usize, query: &'q Query) -> Result<CompareSampling<'q>, Fault>
     where
         'a: 'q,
     {
@@ -370,10 +320,10 @@ impl<'a> Session<'a> {
             columns: [first.target.column, second.target.column],
         };
         let asked = (self.call.seed, self.call.shows_evidence);
-        CompareSampling::new(query, &sides, &first.kind, (*within, *delta), asked)
+        CompareSampling::new((place, query), &sides, &first.kind, (*within, *delta), asked)
     }
 
-    fn rank<'q>(&self, query: &'q Query) -> Result<RankSampling<'q>, Fault>
+    fn rank<'q>(&self, place: usize, query: &'q Query) -> Result<RankSampling<'q>, Fault>
     where
         'a: 'q,
     {
@@ -390,76 +340,16 @@ impl<'a> Session<'a> {
             models: *models,
         };
         let series = Series { seed: self.call.seed, branch: self.call.branch };
-        RankSampling::new(query, setup, series, self.call.shows_evidence)
+        RankSampling::new((place, query), setup, series, self.call.shows_evidence)
     }
 
     /// Runs a group for its share of the time.
-    fn turn<'q>(
-        &self,
-        group: Group<'q>,
-        (executor, levels): (&dyn Executor, &mut Levels),
-        share: &Budget,
-        watch: &dyn Watch,
-    ) -> Result<Turn<'q>, Fault> {
-        let Group { mut places, sampling } = group;
+    fn turn<'q>(&self, group: &mut Group<'q>, running: Running<'_>) -> Result<Turn<'q>, Fault> {
         // Outcomes that are not there are missing for one group: it ends, and the others go on.
-        let budget = if executor.is_stored() { share } else { self.budget };
-        let answers = Answers { call: self.call, budget };
-        let budgets = (budget, share);
-        let mut broken = None;
-        let results = match sampling {
-            Sampling::Estimate(mut estimate) => {
-                match estimate.run((executor, levels), budgets, watch)? {
-                    Advance::Stopped => {}
-                    Advance::Paused => return Ok(paused(places, Sampling::Estimate(estimate))),
-                    Advance::Faulty(found) => {
-                        broken = Some(flaw(found.fault)?);
-                        // Those that had stopped before that trial do not know of it.
-                        estimate.keep(&mut places, |entry| entry.stopped_before(found.index));
-                    }
-                    Advance::Apart(columns) => {
-                        let (slow, fast) = places
-                            .into_iter()
-                            .zip(&estimate.entries)
-                            .partition::<Vec<_>, _>(|(_, entry)| columns.contains(&entry.column));
-                        let of = |list: Vec<(usize, &EstimateEntry<'_>)>| {
-                            list.into_iter().map(|(k, _)| k).collect()
-                        };
-                        let (slow, fast) = (of(slow), of(fast));
-                        let apart = estimate.part(&columns);
-                        return Ok(Turn::Apart(Box::new([
-                            Group { places: fast, sampling: Sampling::Estimate(estimate) },
-                            Group { places: slow, sampling: Sampling::Estimate(apart) },
-                        ])));
-                    }
-                }
-                answers.estimate(estimate)
-            }
-            Sampling::Compare(mut compare) => match answers.compare(&mut compare, executor, share, watch) {
-                Ok(None) => return Ok(paused(places, Sampling::Compare(compare))),
-                result => result.map(Vec::from_iter),
-            },
-            Sampling::Rank(mut rank) => match answers.rank(&mut rank, executor, share, watch) {
-                Ok(None) => return Ok(paused(places, Sampling::Rank(rank))),
-                result => result.map(Vec::from_iter),
-            },
-            Sampling::Split(question) => {
-                answers.split(&question, executor, share, watch).map(|one| vec![one])
-            }
-        };
-        Ok(match results {
-            Ok(results) => Turn::Over(places.into_iter().zip(results).collect(), broken),
-            Err(fault) => Turn::Over(Vec::new(), Some(flaw(fault)?)),
-        })
-    }
-
-    /// The results of the queries of a group that have stopped; the others are left out.
-    fn decided(&self, group: Group<'_>) -> Result<Answered, Fault> {
-        let Group { mut places, sampling: Sampling::Estimate(mut estimate) } = group else {
-            return Ok(Vec::new());
-        };
-        estimate.keep(&mut places, |entry| entry.stop.is_some());
-        let answers = Answers { call: self.call, budget: self.budget };
-        Ok(places.into_iter().zip(answers.estimate(estimate)?).collect())
+        let budget = if running.executor.is_stored() { running.share } else { self.budget };
+        match group.run(&Answers { call: self.call, budget }, running) {
+            Err(fault @ Fault::Model(_)) => Ok(Turn::Over(Vec::new(), Some(fault))),
+            turn => turn,
+        }
     }
 }

@@ -13,7 +13,7 @@ use super::region::{Fit, HORIZONS};
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
-use crate::engine::sample::{Followed, sample};
+use crate::engine::trials::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;

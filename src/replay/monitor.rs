@@ -9,7 +9,7 @@ use super::instants::Instant;
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
 use crate::compile::study::World;
-use crate::engine::given::{averaged, judge};
+use crate::engine::trials::given::{averaged, judge};
 use crate::engine::{PreparedWorld, Threads};
 use crate::model::{AgentId, Parameter};
 use crate::syntax::diagnostic::Diagnostic;

@@ -6,7 +6,7 @@ use crate::cli::values::threads;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::compile::study::{Ask, MeasureKind, Query, Target};
-use crate::engine::executor::{Executor, Job};
+use crate::engine::trials::executor::{Executor, Job};
 use crate::engine::{Budget, Fault, PreparedWorld};
 use crate::library;
 use crate::syntax::diagnostic::Diagnostic;

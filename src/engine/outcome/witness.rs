@@ -1,6 +1,6 @@
 //! Trials that show why a result is as it is.
 
-use crate::engine::decider::Decider;
+use crate::engine::witness::decider::Decider;
 
 /// What a witness is one of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -13,13 +13,13 @@ mod stored;
 mod table;
 mod unit;
 
-pub use super::splitting::{RunRecord, SplitRun};
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
-use crate::engine::executor::{Executor, Job, Threads};
 use crate::engine::fault::Fault;
-use crate::engine::prepared::PreparedWorld;
-use crate::engine::splitting;
+use crate::engine::sampling::splitting;
+pub use crate::engine::sampling::splitting::{RunRecord, SplitRun};
+use crate::engine::trials::executor::{Executor, Job, Threads};
+use crate::engine::trials::prepared::PreparedWorld;
 use crate::kernel::driver::MakeDrivers;
 use crate::trials::budget::Budget;
 use crate::trials::cell::Item;

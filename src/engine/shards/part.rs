@@ -4,7 +4,7 @@
 use super::Origin;
 use super::table::Table;
 use super::unit::Unit;
-use crate::engine::splitting::RunRecord;
+use crate::engine::sampling::splitting::RunRecord;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -121,7 +121,7 @@ mod tests {
         let trials = Trials { world: 0, columns: vec![2], advice: None, from: 50, to: 150 };
         let record = RunRecord { paths: 1, steps: 2, lost: 0, estimate: 0.5, levels: vec![f64::INFINITY] };
         let origin = Origin { version: "1".to_owned(), print: "p".to_owned(), seed: 3 };
-        let run = crate::engine::splitting::SplitRun {
+        let run = crate::engine::sampling::splitting::SplitRun {
             world: 1,
             columns: [0, 1],
             rule: crate::stats::splitting::Rule {

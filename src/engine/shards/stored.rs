@@ -2,8 +2,8 @@
 
 use super::part::{Body, Head, Part};
 use super::unit::{Trials, Unit};
-use crate::engine::executor::{Cells, Executor, Job, Threads};
-use crate::engine::splitting::{RunRecord, SplitRun};
+use crate::engine::sampling::splitting::{RunRecord, SplitRun};
+use crate::engine::trials::executor::{Cells, Executor, Job, Threads};
 use crate::logic::Invalid;
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Cell, Item};

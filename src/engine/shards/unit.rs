@@ -1,6 +1,6 @@
 //! Units of work: trials in a row of one table, or a run of splitting.
 
-use crate::engine::splitting::SplitRun;
+use crate::engine::sampling::splitting::SplitRun;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! When the atoms of a formula held in a trial.
 
-use crate::engine::prepared::PreparedWorld;
+use crate::engine::trials::prepared::PreparedWorld;
 use crate::logic::Root;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
 use std::collections::BTreeSet;

@@ -11,13 +11,13 @@ pub use behind::FIRST;
 pub use motion::{Membership, Millimetres, Motion, PlannedWay, SPACING, Track};
 pub use recorded::{Walk, recorded};
 
-use super::call::Call;
-use super::outcome::{CallResult, Shows, Witness};
-use super::prepared::PreparedWorld;
-use super::witness;
 use crate::base::lanes::Mask;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::Study;
+use crate::engine::call::Call;
+use crate::engine::outcome::{CallResult, Shows, Witness};
+use crate::engine::trials::prepared::PreparedWorld;
+use crate::engine::witness;
 use crate::kernel::process::ViewReadings;
 use crate::kernel::{Address, End, Program, Run, State, start};
 use crate::logic;

@@ -4,7 +4,7 @@ use super::parameter::Fitted;
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
 use crate::compile::study::Study;
-use crate::engine::sample::{Followed, Sample, sample};
+use crate::engine::trials::sample::{Followed, Sample, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;

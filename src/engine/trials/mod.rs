@@ -1,0 +1,10 @@
+//! Worlds made ready to run, and the executors that run trials in them.
+
+pub mod executor;
+pub mod given;
+pub(in crate::engine) mod placement;
+pub mod prepared;
+pub mod sample;
+#[cfg(test)]
+pub(in crate::engine) mod tests;
+pub(in crate::engine) mod trial;

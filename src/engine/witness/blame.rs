@@ -1,0 +1,453 @@
+//! What decided a trial: the atom, comparison or number, and the agents in it.
+
+use crate::base::tick::{Clock, Tick};
+use crate::compile::study;
+use crate::engine::answer::words;
+use crate::engine::trials::prepared::PreparedWorld;
+use crate::engine::witness::culprits::{NAMED, Search};
+use crate::engine::witness::decider::{self, Decider};
+use crate::engine::witness::grounds::{copies, each, grounds};
+use crate::kernel::{Readings, State};
+use crate::logic::{
+    AtomId, Node, NodeId, Part, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, leaves,
+    sides, sources,
+};
+use crate::model::{AgentId, Bool, Who};
+use crate::trials::budget::Budget;
+
+/// Most truth values and numbers that are kept of a trial.
+const MOST_KEPT: usize = 1 << 27;
+
+/// Truth values and numbers of the states of one trial, state by state.
+#[derive(Default)]
+pub(in crate::engine) struct Record {
+    atoms: Vec<bool>,
+    signals: Vec<f64>,
+    /// Atoms and signals of a state.
+    width: (usize, usize),
+    states: usize,
+    full: bool,
+}
+
+impl Record {
+    /// Keeps what was read of lane 0, as long as there is room.
+    pub(in crate::engine) fn push(&mut self, readings: &Readings) {
+        self.full |= self.atoms.len() + 8 * self.signals.len() > MOST_KEPT;
+        if self.full {
+            return;
+        }
+        self.width = (readings.atoms.len(), readings.signals.len());
+        self.atoms.extend(readings.atoms.iter().map(|mask| mask.has(0)));
+        self.signals.extend(readings.signals.iter().map(|lanes| lanes.0[0]));
+        self.states += 1;
+    }
+
+    /// Whether the trial is longer than what is kept: then nothing tells what decided it.
+    pub(in crate::engine) const fn is_full(&self) -> bool {
+        self.full
+    }
+}
+
+impl Record {
+    /// Calls `look` with the record in the form that `logic` reads.
+    fn read<T>(
+        &self,
+        prepared: &PreparedWorld,
+        budget: &Budget,
+        look: impl FnOnce(&Recording<'_>) -> T,
+    ) -> T {
+        let (atoms, signals) = self.width;
+        let place = |width: usize, at: u64, one: u32| at as usize * width + one as usize;
+        let atoms =
+            |atom: AtomId, at: u64| self.atoms.get(place(atoms, at, atom.0)).is_some_and(|holds| *holds);
+        let signals = |signal: SignalId, at: u64| {
+            self.signals.get(place(signals, at, signal.0)).copied().unwrap_or(f64::NAN)
+        };
+        look(&Recording {
+            atoms: &atoms,
+            signals: &signals,
+            seen: self.states as u64,
+            horizon: prepared.horizon,
+            clock: prepared.program.scenario.clock,
+            stop: &|| budget.is_late(),
+        })
+    }
+}
+
+/// What decided.
+#[derive(Clone, Debug, Default)]
+pub(in crate::engine) struct Said {
+    /// In words.
+    pub(in crate::engine) words: String,
+    /// The agent and number that did.
+    pub(in crate::engine) decider: Option<Decider>,
+    /// All agents that are named, the first few of those who did.
+    pub(in crate::engine) agents: Vec<String>,
+}
+
+impl Said {
+    /// Other words about the same agents.
+    fn saying(self, words: String) -> Self {
+        Self { words, ..self }
+    }
+
+    /// Whether there are words.
+    fn is_told(&self) -> bool {
+        !self.words.is_empty()
+    }
+
+    /// These words, followed by others with their agents.
+    fn with(self, more: Self) -> Self {
+        Self { words: self.words + &more.words, ..more }
+    }
+
+    /// Several, told one after the other.
+    fn joined(mut list: Vec<Self>, between: &str) -> Self {
+        list.dedup_by(|next, last| next.words == last.words);
+        let words = list.iter().map(|one| one.words.as_str()).collect::<Vec<_>>().join(between);
+        let agents = each(list.iter().flat_map(|one| one.agents.clone()).collect());
+        Self { words, decider: list.into_iter().find_map(|one| one.decider), agents }
+    }
+}
+
+impl From<String> for Said {
+    fn from(words: String) -> Self {
+        Self { words, ..Self::default() }
+    }
+}
+
+/// What decided the truth of a formula in a trial; no words where nothing in particular did.
+pub(in crate::engine) fn truth(
+    prepared: &PreparedWorld,
+    root: NodeId,
+    (record, budget): (&Record, &Budget),
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> Said {
+    record.read(prepared, budget, |recording| {
+        let Ok(explanation) = explain(&prepared.tree, root, recording) else { return Said::default() };
+        // Of those who are not there nothing is to be said, unless there is nobody else.
+        let absent = |reason: &&Reason| {
+            let Node::Atom(atom) = prepared.tree.nodes[reason.leaf.0 as usize] else { return false };
+            !reason.value && matches!(prepared.atoms[atom.0 as usize], Bool::Present(_))
+        };
+        // The last reason in time is the one that closed the case.
+        let said: Vec<&Reason> = explanation.reasons.iter().filter(|reason| !absent(reason)).collect();
+        let last = said.iter().copied().max_by_key(|reason| (reason.to, reason.from));
+        // Another of the same time closed it with it; of more than two the last stands for all. That someone has the left
+        // side of an implication goes without saying where the whole is told.
+        let goes_without = |reason: &Reason| {
+            let Node::Atom(atom) = prepared.tree.nodes[reason.leaf.0 as usize] else { return false };
+            reason.value && prepared.texts.cases.contains(&atom.0)
+        };
+        let of_then = |last: &Reason| {
+            let then = said.iter().copied().filter(|one| (one.to, one.from) == (last.to, last.from));
+            then.filter(|one| *one == last || !goes_without(one)).collect::<Vec<&Reason>>()
+        };
+        match last {
+            None if explanation.reasons.len() > 1 => {
+                "no agent of the quantified set was present".to_owned().into()
+            }
+            None if explanation.reasons.len() == 1 => {
+                closing(prepared, &explanation.reasons[0], recording, &state_at)
+            }
+            Some(reason) => {
+                let then = of_then(reason);
+                let told = if then.len() <= 2 { then } else { vec![reason] };
+                let list = told.into_iter().map(|one| closing(prepared, one, recording, &state_at));
+                Said::joined(list.collect(), "; ")
+            }
+            None if explanation.verdict.is_some() => {
+                "its value does not depend on the trial".to_owned().into()
+            }
+            None => Said::default(),
+        }
+    })
+}
+
+/// Where the value of a metric in a trial comes from, in words, and since when it was so.
+pub(in crate::engine) fn number(
+    prepared: &PreparedWorld,
+    root: TermId,
+    (value, unit): (f64, &str),
+    (record, budget): (&Record, &Budget),
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> (Option<Tick>, Said) {
+    record.read(prepared, budget, |recording| {
+        let (_, found) = sources(&prepared.tree, root, Tick(0), recording);
+        let never =
+            value == f64::INFINITY && matches!(prepared.tree.terms[root.0 as usize], Term::TimeUntil(_));
+        let text = if never { "not within the horizon".to_owned() } else { words::brief(value, unit) };
+        let is_beyond =
+            |source: &Source| matches!(source, Source::Signal { value, .. } if !value.is_finite());
+        match found.as_slice() {
+            // A condition that comes true gives a time that is finite.
+            several
+                if !value.is_finite()
+                    && !never
+                    && !matches!(several, [Source::Signal { .. }])
+                    && !several.iter().any(is_beyond) =>
+            {
+                (None, text.into())
+            }
+            [Source::Formula(reason)] => {
+                let closing = closing(prepared, reason, recording, &state_at);
+                let words = format!("{text}, when {}", closing.words);
+                (Some(reason.to), closing.saying(words))
+            }
+            [Source::Signal { at, .. }] => {
+                let from = origin(prepared, &found[0], false, (&state_at, recording.stop));
+                let words = format!("{text}, {}", from.words);
+                (Some(*at), from.saying(words))
+            }
+            [] => (None, text.into()),
+            several => {
+                let told = |source: &Source| full(prepared, source, recording, &state_at);
+                let said = Said::joined(
+                    several.iter().map(told).filter(Said::is_told).take(NAMED).collect(),
+                    " and ",
+                );
+                let words = format!("{text}: {}", said.words);
+                (None, Said { decider: None, ..said }.saying(words))
+            }
+        }
+    })
+}
+
+/// Which condition has the margin that the robustness of a formula is in a trial, and when.
+pub(in crate::engine) fn margin(
+    prepared: &PreparedWorld,
+    root: NodeId,
+    (value, unit): (Option<f64>, &str),
+    (record, budget): (&Record, &Budget),
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> (Option<Tick>, Said) {
+    record.read(prepared, budget, |recording| {
+        let Some(found) = critical(&prepared.tree, root, recording) else {
+            return (None, value.map_or(String::new(), |value| words::brief(value, unit)).into());
+        };
+        // All conditions have the unit of the margin, which a probability of it has not.
+        let condition = prepared.texts.comparisons.get(&found.leaf.0);
+        let own = condition.map_or(String::new(), |(_, dimension)| dimension.to_string());
+        let unit = if unit.is_empty() { own.as_str() } else { unit };
+        let mut said = Said::from(format!("margin {}", words::brief(value.unwrap_or(found.margin), unit)));
+        if let Some((text, _)) = condition.filter(|(text, _)| !text.is_empty()) {
+            said.words = format!("{}, of `{text}`", said.words);
+        }
+        if let (Some(state), Node::Compare(_, x, y)) =
+            (state_at(found.at), &prepared.tree.nodes[found.leaf.0 as usize])
+        {
+            let mut search = Search::of(prepared, &state, recording.stop);
+            for side in [x, y] {
+                if let Term::Signal(signal) = &prepared.tree.terms[side.0 as usize] {
+                    search.extremum(&prepared.signals[signal.0 as usize]);
+                }
+            }
+            if search.is_empty() {
+                spoken_of(&mut search, prepared, found.leaf);
+            }
+            said = said.with(names(prepared, &search.named(), &state));
+        }
+        (Some(found.at), said)
+    })
+}
+
+/// A state that gave a number its value; `full` says the value and the moment too.
+fn origin(
+    prepared: &PreparedWorld,
+    source: &Source,
+    full: bool,
+    (state_at, stop): (&impl Fn(Tick) -> Option<State>, &dyn Fn() -> bool),
+) -> Said {
+    let Source::Signal { signal, at, value } = source else { return Said::default() };
+    let Some((text, dimension)) = prepared.texts.signals.get(signal.0 as usize) else {
+        return Said::default();
+    };
+    let said = if full {
+        format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), moment(prepared, *at))
+    } else {
+        format!("`{text}`")
+    };
+    if let Some(state) = state_at(*at) {
+        let mut search = Search::of(prepared, &state, stop);
+        let signal = &prepared.signals[signal.0 as usize];
+        search.extremum(signal);
+        if search.is_empty() {
+            search.name_all_in(signal);
+        }
+        search.name_members(text, |tell| signal.mentions(tell));
+        return Said::from(said).with(names(prepared, &search.named(), &state));
+    }
+    said.into()
+}
+
+/// One of several sources of a number, with its moment.
+fn full(
+    prepared: &PreparedWorld,
+    source: &Source,
+    recording: &Recording<'_>,
+    state_at: &impl Fn(Tick) -> Option<State>,
+) -> Said {
+    match source {
+        Source::Formula(reason) => {
+            let closing = closing(prepared, reason, recording, state_at);
+            let words = format!("{} at {}", closing.words, moment(prepared, reason.to));
+            closing.saying(words)
+        }
+        signal @ Source::Signal { .. } => origin(prepared, signal, true, (state_at, recording.stop)),
+    }
+}
+
+fn moment(prepared: &PreparedWorld, at: Tick) -> String {
+    match prepared.program.scenario.clock {
+        Clock::Steps => format!("step {}", at.0),
+        clock => format!("{} s", words::number(clock.seconds(at))),
+    }
+}
+
+/// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
+fn names(prepared: &PreparedWorld, who: &[AgentId], state: &State) -> Said {
+    let agents: Vec<String> = who.iter().filter_map(|id| name_of(prepared, *id, state)).collect();
+    let words = if agents.is_empty() { String::new() } else { format!(": {}", agents.join(", ")) };
+    Said { words, decider: None, agents }
+}
+
+fn name_of(prepared: &PreparedWorld, id: AgentId, state: &State) -> Option<String> {
+    let scenario = &prepared.program.scenario;
+    scenario.agents.get(id.0 as usize)?;
+    Some(state.name_of(scenario, id, 0))
+}
+
+/// A reason in words.
+fn closing(
+    prepared: &PreparedWorld,
+    reason: &Reason,
+    recording: &Recording<'_>,
+    state_at: &impl Fn(Tick) -> Option<State>,
+) -> Said {
+    let word = words::truth(reason.value);
+    match &prepared.tree.nodes[reason.leaf.0 as usize] {
+        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms[atom.0 as usize] => {
+            let name = prepared.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
+            format!("{name} is {}present", if reason.value { "" } else { "not " }).into()
+        }
+        Node::Atom(atom) => {
+            let Some(text) = prepared.texts.atoms.get(atom.0 as usize) else { return Said::default() };
+            let condition = &prepared.atoms[atom.0 as usize];
+            let stop = recording.stop;
+            if let Some((part, state)) = prepared.texts.parts.get(&atom.0).zip(state_at(reason.to))
+                && let Some(because) = because((prepared, stop), (part, text), reason.value, &state)
+            {
+                return because;
+            }
+            let state = state_at(reason.to);
+            if let Some(state) = &state {
+                let mut search = Search::of(prepared, state, stop);
+                search.walk(condition, reason.value);
+                search.name_members(text, |tell| condition.mentions(tell));
+                let named = decided(prepared, search, state);
+                if named.is_told() {
+                    return Said::from(format!("`{text}` {word}")).with(named);
+                }
+            }
+            let of = |state: &State| {
+                let asked = Search::of(prepared, state, stop);
+                copies(&prepared.program.scenario, (condition, reason.value), false, &asked)
+            };
+            let copies = state.as_ref().map_or_else(Vec::new, of);
+            let colon = if copies.is_empty() { "" } else { ": " };
+            format!("`{text}` {word}{colon}{}", copies.join(", ")).into()
+        }
+        Node::Compare(..) => {
+            let Some((text, _)) = prepared.texts.comparisons.get(&reason.leaf.0) else {
+                return Said::default();
+            };
+            let found = sides(&prepared.tree, reason.leaf, reason.to, recording);
+            let told = |source: &Source| full(prepared, source, recording, state_at);
+            let list: Vec<Said> = found.iter().map(told).filter(Said::is_told).take(NAMED).collect();
+            let head = format!("`{text}` {word}");
+            if list.is_empty() {
+                let Some(state) = state_at(reason.to) else { return head.into() };
+                let mut search = Search::of(prepared, &state, recording.stop);
+                spoken_of(&mut search, prepared, reason.leaf);
+                return Said::from(head).with(decided(prepared, search, &state));
+            }
+            let said = Said::joined(list, " and ");
+            let words = format!("{head}: {}", said.words);
+            Said { decider: None, ..said }.saying(words)
+        }
+        _ => Said::default(),
+    }
+}
+
+/// A condition that is made of others in words, with those of them that decide in a state and the agents in these.
+fn because(
+    (prepared, stop): (&PreparedWorld, &dyn Fn() -> bool),
+    (part, whole): (&study::Part, &str),
+    truth: bool,
+    state: &State,
+) -> Option<Said> {
+    let found = grounds(part, truth, &Search::of(prepared, state, stop))?;
+    let mut search = Search::of(prepared, state, stop);
+    let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let people = |at: usize, who: Who| {
+        let id = match who {
+            Who::Agent(id) => Some(id),
+            Who::Running(of) => found[at].given.get(of as usize).copied(),
+        };
+        id.and_then(|id| name_of(prepared, id, state))
+    };
+    let parts: Vec<&study::Part> = found.iter().map(|ground| ground.part).collect();
+    let texts = prepared.texts.words(&parts, &people)?;
+    for (ground, text) in found.iter().zip(&texts) {
+        let condition = ground.condition();
+        ground.given.iter().for_each(|id| search.name(*id));
+        search.walk(&condition, ground.truth);
+        search.name_members(text, |tell| condition.mentions(tell));
+        let asked = Search::of(prepared, state, stop);
+        let is_part = !std::ptr::eq(ground.part, part);
+        owners.extend(copies(&prepared.program.scenario, (&condition, ground.truth), is_part, &asked));
+        said.push(words::condition((text, ground.truth)));
+    }
+    let owners = each(owners);
+    let mut named = decided(prepared, search, state);
+    if !named.is_told() && !owners.is_empty() {
+        named.words = format!(": {}", owners.join(", "));
+    }
+    Some(Said::from(words::because((whole, truth), &said)).with(named))
+}
+
+/// The agents who are there of whom a comparison of numbers over time speaks one by one.
+fn spoken_of(search: &mut Search<'_>, prepared: &PreparedWorld, leaf: NodeId) {
+    let Node::Compare(_, x, y) = prepared.tree.nodes[leaf.0 as usize] else { return };
+    for side in [x, y] {
+        let (_, signals) = leaves(&prepared.tree, &[Part::Term(side)]).unwrap_or_default();
+        for signal in signals {
+            search.name_all_in(&prepared.signals[signal.0 as usize]);
+        }
+    }
+}
+
+/// Who was found, in words: the first with its place and the number that was compared.
+fn decided(prepared: &PreparedWorld, search: Search<'_>, state: &State) -> Said {
+    let name = |id| name_of(prepared, id, state);
+    let decider = decider::decider(&search, &prepared.program.scenario, name);
+    // A gap has two ends; who is in a set that is compared as a whole did not decide alone.
+    let mut compared = Vec::new();
+    if let Some((a, b)) = search.compared() {
+        for side in [a, b] {
+            side.mentions(&mut |id| {
+                if !compared.contains(&id) {
+                    compared.push(id);
+                }
+            });
+        }
+    }
+    compared.truncate(if compared.len() > NAMED { 0 } else { NAMED });
+    let said = names(prepared, &search.named(), state);
+    let Some(decider) = decider else { return said };
+    let words = decider::written(&decider, &said.agents);
+    let own = [Some(decider.agent.clone()), decider.other.clone()].into_iter().flatten();
+    let ends = compared.into_iter().filter_map(name);
+    let agents = each(own.chain(said.agents).chain(ends).collect());
+    Said { words, decider: Some(decider), agents }
+}
