@@ -1,36 +1,25 @@
 //! Scenarios and property files through the front end: what is understood, and what is refused.
 
+use crate::texts::Front;
 use smc::base::geometry::Vec2;
 use smc::compile::study::Ask;
-use smc::compile::{Files, Input, Study, compile, requests};
+use smc::compile::{Files, Request, Study};
 use smc::model::{AgentId, Amount, Bool, Move, Num, Position, Who};
-use smc::syntax::diagnostic::Diagnostic;
-use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
-use smc::syntax::source::{Source, SourceId};
 
 /// Compiles two texts; diagnostics as rendered.
 fn compiled(scenario: &str, properties: &str) -> (Option<Study>, String) {
-    let sources =
-        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
-    let (scenario, mut diagnostics): (_, Vec<Diagnostic>) = parse_scenario(&sources[0]);
-    let (properties, more) = parse_properties(&sources[1]);
-    diagnostics.extend(more);
-    let mut files = Files::default();
-    for request in requests(&scenario) {
-        let path = format!("{}/../shared/data/eth-biwi/{}", env!("CARGO_MANIFEST_DIR"), request.path);
-        files.provide(request.path.clone(), std::fs::read(&path).map_err(|e| e.to_string()));
-    }
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &files,
-        settings: &[],
+    let read = |requests: Vec<Request>| {
+        let mut files = Files::default();
+        for request in requests {
+            let path = format!("{}/../shared/data/eth-biwi/{}", env!("CARGO_MANIFEST_DIR"), request.path);
+            files.provide(request.path, std::fs::read(&path).map_err(|e| e.to_string()));
+        }
+        files
     };
-    let (study, found) = compile(&input);
-    diagnostics.extend(found);
-    (study, render(&diagnostics, &sources, false))
+    let front = Front::of(scenario, properties, read);
+    let said = render(&front.said(), &front.sources, false);
+    (front.study, said)
 }
 
 #[test]

@@ -1,14 +1,13 @@
 //! T16: every procedure comes to the same verdict, counts and numbers whatever the threads, the width of rounds, the
 //! order in which trials end, and trials that are run a second time.
 
+use crate::texts::compiled;
+use smc::compile::Study;
 use smc::compile::study::Query;
-use smc::compile::{Files, Input, Study, compile};
 use smc::engine::outcome::{CallResult, Failure, QueryResult};
 use smc::engine::trials::executor::{Cells, Job};
 use smc::engine::{Budget, Call, CommandLine, Executor, Nobody, Threads, run};
 use smc::logic::Invalid;
-use smc::syntax::parse::{parse_properties, parse_scenario};
-use smc::syntax::source::{Source, SourceId};
 use smc::trials::cell::Item;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -46,22 +45,6 @@ rank density in 0.1 /m^2, 0.2 /m^2, 0.4 /m^2 by P(near) within 0.1
 check P(near) >= 0.3 under every density in 0.1 /m^2, 0.4 /m^2
 rank moves of user by P(near) within 0.1 under every density in 0.1 /m^2, 0.4 /m^2
 ";
-
-fn study(model: &str, queries: &str) -> (Study, Vec<Source>) {
-    let sources = vec![Source::new(SourceId(0), "a.scn", model), Source::new(SourceId(1), "a.bltl", queries)];
-    let (scenario, _) = parse_scenario(&sources[0]);
-    let (properties, _) = parse_properties(&sources[1]);
-    let files = Files::default();
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &files,
-        settings: &[],
-    };
-    let (study, found) = compile(&input);
-    (study.unwrap_or_else(|| panic!("{found:?}")), sources)
-}
 
 /// Hands a round out in pieces of random size and order, sleeps between them, and runs some of them twice.
 struct Restless {
@@ -151,7 +134,7 @@ fn whole(study: &Study, seed: u64, executor: &dyn Executor) -> CallResult {
 
 #[test]
 fn t16_neither_threads_nor_rounds_nor_sleep_leave_a_trace() {
-    let (study, _sources) = study(SMALL, QUERIES);
+    let study = compiled(SMALL, QUERIES).unwrap();
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     let is_whole = |query: &&Query| query.every.as_ref().is_none_or(|every| every.place == 0);
     assert_eq!(plain.len(), study.queries.iter().filter(is_whole).count());
@@ -189,7 +172,7 @@ estimate P(F<=#1 (p[1].s == 1)) by clopper_pearson(trials = 2)
 
 #[test]
 fn which_results_an_error_of_the_model_leaves_does_not_depend_on_rounds() {
-    let (study, _sources) = study(WRONG, UNHARMED);
+    let study = compiled(WRONG, UNHARMED).unwrap();
     for (threads, width, state) in [(1, 1, 5), (2, 1000, 6), (3, 7, 7), (8, 64, 8)] {
         let restless =
             Restless { threads: Threads::new(Some(threads)).unwrap(), width, state: AtomicU64::new(state) };
@@ -209,8 +192,8 @@ fn a_proof_lets_nobody_else_read_trials_twice() {
     let model = WRONG.replace("> 85", "> 92");
     let checks: String = (300..600).map(|k| format!("check P(F<=#20 (p[1].s >= 11)) >= 0.{k}\n")).collect();
     // The estimate waits for the proof of its level when the others have come to the trial in which the model is wrong.
-    let (with, _sources) = study(&model, &format!("estimate P(F<=#2 (p[1].s == 1)) within 0.03\n{checks}"));
-    let (without, _sources) = study(&model, &checks);
+    let with = compiled(&model, &format!("estimate P(F<=#2 (p[1].s == 1)) within 0.03\n{checks}")).unwrap();
+    let without = compiled(&model, &checks).unwrap();
     for seed in [2, 3, 7] {
         let threads = Threads::new(Some(1)).unwrap();
         let (with, without) = (whole(&with, seed, &threads), whole(&without, seed, &threads));
@@ -240,7 +223,7 @@ process q { var r: 0 .. 3 = 0
 #[test]
 fn of_several_faulty_paths_the_same_one_is_told() {
     let query = "estimate P(F (w.x > 11)) by splitting(replicas = 40, runs = 2, plain = 100)\n";
-    let (study, _sources) = study(FAULTY_PATHS, query);
+    let study = compiled(FAULTY_PATHS, query).unwrap();
     for seed in 0..4 {
         let found = |threads| whole(&study, seed, &Threads::new(Some(threads)).unwrap()).failure;
         let alone = found(1);
@@ -254,7 +237,7 @@ fn of_several_faulty_paths_the_same_one_is_told() {
 
 #[test]
 fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
-    let (study, _sources) = study(SMALL, QUERIES);
+    let study = compiled(SMALL, QUERIES).unwrap();
     for result in results(&study, &Threads::new(Some(2)).unwrap()) {
         let query = &result.asked.text;
         assert!(result.certifies.contains("error at most"), "{query}: {}", result.certifies);

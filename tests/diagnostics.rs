@@ -1,6 +1,6 @@
 //! Planted errors: each file of `planted/` and what is said about it.
 
-use smc::compile::{Files, Input, compile, own_errors};
+use crate::texts::Front;
 use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
 use smc::syntax::render::render;
@@ -50,17 +50,9 @@ fn values() {
 
 /// The number of errors in two texts, one of them a scenario.
 fn told(scenario: &str, properties: &str) -> usize {
-    let sources =
-        [Source::new(SourceId(0), "many.scn", scenario), Source::new(SourceId(1), "many.bltl", properties)];
-    let (tree, mut said) = parse_scenario(&sources[0]);
-    let (asked, more) = parse_properties(&sources[1]);
-    said.extend(more);
-    let (files, asked) = (Files::default(), [asked]);
-    let input =
-        Input { sources: &sources, scenario: &tree, properties: &asked, files: &files, settings: &[] };
-    let own = own_errors(compile(&input).1, &said, &input);
-    said.extend(own);
-    render(&said, &sources, false);
+    let front = Front::plain(scenario, properties);
+    let said = [front.misread, front.own].concat();
+    render(&said, &front.sources, false);
     said.len()
 }
 

@@ -1,11 +1,10 @@
 //! Mutated examples through the whole front end: tokens dropped, doubled, swapped, replaced. Nothing panics, and
 //! what is refused is refused with a place inside the text.
 
+use crate::texts::Front;
 use proptest::prelude::*;
-use smc::compile::{Files, Input, compile, requests};
-use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::compile::{Files, Request};
 use smc::syntax::render::render;
-use smc::syntax::source::{Source, SourceId};
 
 macro_rules! pair {
     ($name:literal) => {
@@ -136,29 +135,18 @@ fn mutated(text: &str, changes: &[(usize, Change)]) -> String {
 
 /// Everything from two texts to a study or to rendered errors.
 fn front_end(scenario: &str, properties: &str) -> Result<(), TestCaseError> {
-    let sources =
-        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
-    let (scenario, mut said) = parse_scenario(&sources[0]);
-    let (properties, more) = parse_properties(&sources[1]);
-    said.extend(more);
-    let mut files = Files::default();
-    for request in requests(&scenario) {
-        files.provide(request.path, Err("left out".to_owned()));
-    }
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &files,
-        settings: &[],
+    let left_out = |requests: Vec<Request>| {
+        let mut files = Files::default();
+        requests.into_iter().for_each(|request| files.provide(request.path, Err("left out".to_owned())));
+        files
     };
-    let (study, found) = compile(&input);
+    let Front { sources, misread, found, study, .. } = Front::of(scenario, properties, left_out);
     let is_error =
         |d: &smc::syntax::diagnostic::Diagnostic| d.severity == smc::syntax::diagnostic::Severity::Error;
     let refused = found.iter().any(is_error);
-    let (is_whole, is_misread) = (study.is_some(), said.iter().any(is_error));
+    let (is_whole, is_misread) = (study.is_some(), misread.iter().any(is_error));
     prop_assert!(is_whole != refused || !is_whole && is_misread, "a study, or a reason why not");
-    said.extend(found);
+    let said = [misread, found].concat();
     for label in said.iter().flat_map(|d| d.place.iter().chain(&d.related)) {
         let text = &sources[label.span.source.0 as usize].text;
         let (start, end) = (label.span.start as usize, label.span.end as usize);

@@ -231,7 +231,9 @@ fn losses_of_rankings_have_the_unit_of_their_metric() {
         &["--format", "text"],
     );
     assert_eq!(said.code, Some(2), "{}", said.err);
-    assert_eq!(said.err.matches("error[").count(), 4, "{}", said.err);
+    for line in 1..=4 {
+        assert_eq!(said.err.matches(&format!("0.bltl:{line}:")).count(), 1, "line {line}\n{}", said.err);
+    }
     let found = called(
         SMALL,
         &[&format!("rank moves of user by {metric} by betting(epsilon = 10 cm)\n")],

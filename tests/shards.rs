@@ -1,12 +1,11 @@
 //! Clusters in events: workers that take shards from a queue, of which some are lost, slow or run twice. The outcomes are real
 //! and the times are not, so that a thousand workers fit into a test.
 
-use smc::compile::{Files, Input, Study, compile};
+use crate::texts::compiled;
+use smc::compile::Study;
 use smc::engine::outcome::{CallResult, QueryResult, Stop};
 use smc::engine::shards::{Attempts, Head, Origin, Part, Plan, Stored, Unit, run as run_shard};
 use smc::engine::{Budget, Call, CommandLine, Nobody, Threads, run};
-use smc::syntax::parse::{parse_properties, parse_scenario};
-use smc::syntax::source::{Source, SourceId};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -19,19 +18,7 @@ const START: f64 = 0.3;
 const MERGE: f64 = 1.0;
 
 fn study(queries: &str) -> Study {
-    let sources = vec![Source::new(SourceId(0), "a.scn", COIN), Source::new(SourceId(1), "a.bltl", queries)];
-    let (scenario, _) = parse_scenario(&sources[0]);
-    let (properties, _) = parse_properties(&sources[1]);
-    let files = Files::default();
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &files,
-        settings: &[],
-    };
-    let (study, found) = compile(&input);
-    study.unwrap_or_else(|| panic!("{found:?}"))
+    compiled(COIN, queries).unwrap()
 }
 
 fn call() -> Call<'static> {

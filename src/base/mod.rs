@@ -7,6 +7,7 @@ pub mod decimal;
 pub mod dimension;
 pub mod elliptic;
 pub mod fingerprint;
+pub mod frontier;
 pub mod geometry;
 pub mod instant;
 pub mod lanes;

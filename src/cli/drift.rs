@@ -21,13 +21,15 @@ const QUIET: f64 = 1000.0;
 pub(super) fn run(arguments: &Drift, colors: Colors) -> Exit {
     let done = watch(arguments);
     if let (Err(error), TextFormat::Json) = (&done, arguments.format) {
-        let _ = print_error(&error.title);
+        let _ = print_error(error);
     }
     complaint::end(done.map(|found| if found { Exit::Violated } else { Exit::Success }), &[], colors)
 }
 
 /// Writes an error as an object.
-pub(super) fn print_error(message: &str) -> Result<(), Diagnostic> {
+pub(super) fn print_error(error: &Diagnostic) -> Result<(), Diagnostic> {
+    let hint = error.hint.iter().map(|hint| format!(": {hint}"));
+    let message = std::iter::once(error.title.clone()).chain(hint).collect::<String>();
     let error = json!({ "schema": 1, "error": { "bug": false, "message": message } });
     print(&format!("{error}\n"))
 }

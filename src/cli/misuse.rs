@@ -97,7 +97,7 @@ fn tell(error: &Diagnostic, words: &[String]) {
     {
         check::misused(destination.format, error);
     } else if words.iter().any(|word| word == "drift") && format == Some("json") {
-        let _ = drift::print_error(&error.title);
+        let _ = drift::print_error(error);
     }
 }
 

@@ -3,8 +3,7 @@
 use super::goal::{Departure, Entry};
 use super::network::Network;
 use super::tangent::Turn;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use crate::base::frontier::Frontier;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// How a way goes on from a place on a track.
@@ -58,16 +57,15 @@ impl Field {
     }
 
     fn spread(&mut self, network: &Network) {
-        let mut queue = BinaryHeap::new();
+        let mut queue = Frontier::new();
         for (k, station) in network.stations.iter().enumerate() {
             if let Some((length, departure)) = self.leave(network, station.track, station.at) {
                 self.lengths[k] = length;
                 self.onward[k] = Some(Onward::Goal(departure));
-                queue.push(Reverse((length.to_bits(), k as u32)));
+                queue.push(length, k as u32);
             }
         }
-        while let Some(Reverse((bits, at))) = queue.pop() {
-            let length = f64::from_bits(bits);
+        while let Some((length, at)) = queue.pop() {
             if length > self.lengths[at as usize] {
                 continue;
             }
@@ -76,7 +74,7 @@ impl Field {
                 if length < self.lengths[from as usize] {
                     self.lengths[from as usize] = length;
                     self.onward[from as usize] = Some(onward);
-                    queue.push(Reverse((length.to_bits(), from)));
+                    queue.push(length, from);
                 }
             };
             if !station.leaves {

@@ -2,9 +2,10 @@
 //! error.
 
 use super::{line, tokens};
-use smc::compile::{Files, Input, compile, own_errors, requests};
+use crate::texts::Front;
+use smc::compile::{Files, requests};
 use smc::syntax::diagnostic::{Diagnostic, Severity};
-use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::syntax::parse::parse_scenario;
 use smc::syntax::render::render;
 use smc::syntax::source::{Source, SourceId};
 
@@ -50,18 +51,10 @@ pub(super) fn pairs() -> Vec<Pair> {
 
 /// The errors in a scenario and its properties.
 pub(super) fn errors([scenario, properties]: [&str; 2], files: &Files) -> (Vec<Source>, Vec<Diagnostic>) {
-    let sources =
-        vec![Source::new(SourceId(0), "a.scn", scenario), Source::new(SourceId(1), "a.bltl", properties)];
-    let (tree, mut said) = parse_scenario(&sources[0]);
-    let (asked, more) = parse_properties(&sources[1]);
-    said.extend(more);
-    let asked = [asked];
-    let input = Input { sources: &sources, scenario: &tree, properties: &asked, files, settings: &[] };
-    let (_, found) = compile(&input);
-    let own = own_errors(found, &said, &input);
-    said.extend(own);
+    let front = Front::of(scenario, properties, |_| files.clone());
+    let mut said = [front.misread, front.own].concat();
     said.retain(|one| one.severity == Severity::Error);
-    (sources, said)
+    (front.sources, said)
 }
 
 #[test]

@@ -57,8 +57,8 @@ fn t26_a_bayes_factor_bounds_no_error() {
 fn t26_nothing_of_the_kind_is_offered() {
     for file in [
         "src/compile/query/methods.rs",
-        "src/engine/words.rs",
-        "src/engine/procedure.rs",
+        "src/engine/answer/words.rs",
+        "src/engine/sampling/procedure.rs",
         "src/stats/procedures/mod.rs",
     ] {
         let text = std::fs::read_to_string(format!("{}/{file}", env!("CARGO_MANIFEST_DIR"))).unwrap();

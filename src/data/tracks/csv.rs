@@ -7,9 +7,7 @@
 use super::cells::{cells, records, separator};
 use super::line::{LineError, number, quoted, whole_fault};
 use super::recording::{Clock, Recording};
-use super::rows::{Row, people, usual_stride};
-use super::timed::TimedRow;
-use super::traces::Traces;
+use super::rows::{Row, TimedRow, Traces, people, usual_stride};
 use crate::base::geometry::{Vec2, coordinate_fault};
 use std::borrow::Cow;
 

@@ -3,8 +3,7 @@
 
 use super::line::{LineError, json_fault, json_velocity};
 use super::recording::Recording;
-use super::timed::TimedRow;
-use super::traces::Traces;
+use super::rows::{TimedRow, Traces};
 use crate::base::geometry::{Vec2, coordinate_fault};
 use serde::Deserialize;
 

@@ -14,8 +14,6 @@ pub mod pedpy;
 mod plausible;
 pub mod recording;
 mod rows;
-mod timed;
-mod traces;
 pub mod trajnet;
 
 pub use batch::{Batch, Observation};

@@ -6,7 +6,7 @@
 use super::batch::{Batch, Observation};
 use super::line::{LineError, json_fault, json_velocity};
 use super::recording::Recording;
-use super::timed::{self, TimedRow};
+use super::rows::{self, TimedRow};
 use crate::base::geometry::{Vec2, coordinate_fault};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -113,7 +113,7 @@ pub(super) fn read_identified(text: &str) -> Result<Recording, Vec<LineError>> {
             rows.push(TimedRow { line, time, id, position, velocity });
         }
     }
-    timed::recording(&rows, errors)
+    rows::recording(&rows, errors)
 }
 
 /// The good lines with their numbers, and all errors.

@@ -22,8 +22,7 @@ mod with_feature {
     use super::{LineError, Recording};
     use crate::base::geometry::{Vec2, coordinate_fault};
     use crate::data::tracks::line::quoted;
-    use crate::data::tracks::timed::TimedRow;
-    use crate::data::tracks::traces::Traces;
+    use crate::data::tracks::rows::{TimedRow, Traces};
     use bytes::Bytes;
     use parquet::errors::ParquetError;
     use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};

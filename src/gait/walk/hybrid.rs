@@ -6,11 +6,11 @@ use super::last::Chain;
 use super::no_step::NoStep;
 use super::placed::{PlacedStep, angle};
 use super::task::{HybridAStar, Walk};
+use crate::base::frontier::Frontier;
 use crate::base::geometry::{Vec2, rotated};
 use crate::gait::{Draws, Foot, Stance};
 use crate::route::grid::Way;
-use std::cmp::Reverse;
-use std::collections::{BTreeSet, BinaryHeap};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Headings that are told apart.
@@ -37,14 +37,15 @@ struct Node {
 
 struct Tree {
     nodes: Vec<Node>,
-    queue: BinaryHeap<Reverse<(u64, u64, u32)>>,
+    /// By the length of the whole walk: what is left of it, in bits, and the node.
+    queue: Frontier<(u64, u32)>,
 }
 
 impl Tree {
     fn push(&mut self, found: &Candidate, left: f64, before: Option<u32>, number: u32) {
         let start = before.map_or(0.0, |k| self.nodes[k as usize].length);
         let length = start + found.length;
-        self.queue.push(Reverse(((length + left).to_bits(), left.to_bits(), self.nodes.len() as u32)));
+        self.queue.push(length + left, (left.to_bits(), self.nodes.len() as u32));
         self.nodes.push(Node { step: found.step, after: found.after, before, length, number });
     }
 
@@ -65,7 +66,7 @@ impl HybridAStar {
         walk: &Walk,
         (pose, way, number): (&Pose, &Way, u32),
     ) -> Result<Chain, NoStep> {
-        let mut tree = Tree { nodes: Vec::new(), queue: BinaryHeap::new() };
+        let mut tree = Tree { nodes: Vec::new(), queue: Frontier::new() };
         let left = |found: &Candidate| {
             if self.is_as_published {
                 (found.step.end() - walk.goal).norm()
@@ -107,7 +108,7 @@ impl HybridAStar {
         };
         let mut closed = BTreeSet::new();
         let mut expansions = 0;
-        while let Some(Reverse((_, _, at))) = tree.queue.pop() {
+        while let Some((_, (_, at))) = tree.queue.pop() {
             let Node { step, after, number, .. } = &tree.nodes[at as usize];
             let (step, from, next) = (*step, Pose::after(step, *after), number + 1);
             if !closed.insert(self.closing(&from)) || !self.is_clear(walk, &step) {

@@ -2,9 +2,8 @@
 //! in lazy Theta* (Nash, Koenig, Tovey 2010). Steps between neighbours alone would make ways up to 8 % too long.
 
 use super::clearance::ClearanceGrid;
+use crate::base::frontier::Frontier;
 use crate::base::geometry::Vec2;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// Ways keep this distance from barriers in addition to the radius, m, where there is room for it: about the sway of a walk.
 const COMFORT: f64 = 0.05;
@@ -54,17 +53,17 @@ impl GoalField {
         let (near, start) = (1.5 * grid.side(), 1.5 * grid.side() + COMFORT);
         let mut lengths = vec![f64::INFINITY; self.cells.len()];
         let mut states = vec![State::Open; self.cells.len()];
-        let mut queue = BinaryHeap::new();
+        let mut queue = Frontier::new();
         let source = grid.cell(self.goal);
         for cell in grid.around(source).chain([source]).filter(|k| grid.is_free(*k)) {
             let length = (grid.center(cell) - self.goal).norm();
             lengths[cell as usize] = length;
             self.cells[cell as usize] = Some(Onward { anchor: self.goal, rest: 0.0, root: None });
-            queue.push(Reverse((length.to_bits(), cell)));
+            queue.push(length, cell);
         }
-        while let Some(Reverse((bits, at))) = queue.pop() {
+        while let Some((length, at)) = queue.pop() {
             let (k, center) = (at as usize, grid.center(at));
-            if states[k] == State::Closed || f64::from_bits(bits) > lengths[k] {
+            if states[k] == State::Closed || length > lengths[k] {
                 continue;
             }
             let Some(onward) = self.cells[k] else { continue };
@@ -103,7 +102,7 @@ impl GoalField {
                     lengths[k] = best.0;
                     self.cells[k] = Some(best.1).filter(|_| best.0.is_finite());
                     if best.0.is_finite() {
-                        queue.push(Reverse((best.0.to_bits(), at)));
+                        queue.push(best.0, at);
                     }
                     continue;
                 }
@@ -115,7 +114,7 @@ impl GoalField {
                 if states[j] == State::Open && length < lengths[j] && grid.is_free(other) {
                     lengths[j] = length;
                     self.cells[j] = Some(onward);
-                    queue.push(Reverse((length.to_bits(), other)));
+                    queue.push(length, other);
                 }
             }
         }

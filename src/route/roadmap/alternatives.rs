@@ -5,9 +5,8 @@ use super::field::DistanceField;
 use super::free::FreeSpace;
 use super::graph::Roadmap;
 use super::word::{Word, WordTree};
+use crate::base::frontier::Frontier;
 use crate::base::geometry::{Segment, Vec2, cross};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// Most pairs of a vertex and a word that a search looks at: about 0.1 s.
 const MOST_STATES: usize = 50_000;
@@ -56,18 +55,18 @@ pub fn alternatives(
     search.states.push(State { place: from, word: 0, before: 0, length: 0.0 });
     // The words with which each vertex, and the goal, was reached.
     let mut known: Vec<Vec<u32>> = vec![Vec::new(); vertices.len() + 1];
-    // The length of the whole path in bits, the vertex, the state before.
-    let mut queue: BinaryHeap<Reverse<(u64, u32, u32)>> = BinaryHeap::new();
+    // By the length of the whole path: the vertex, the state before.
+    let mut queue: Frontier<(u32, u32)> = Frontier::new();
     for k in (0..goal_number).filter(|k| field.length(*k).is_finite()) {
-        queue.push(Reverse((((place(k) - from).norm() + field.length(k)).to_bits(), k, 0)));
+        queue.push((place(k) - from).norm() + field.length(k), (k, 0));
     }
     if free.is_clear(from, goal) {
-        queue.push(Reverse(((goal - from).norm().to_bits(), goal_number, 0)));
+        queue.push((goal - from).norm(), (goal_number, 0));
     }
     let mut found = Vec::new();
     while found.len() < most
         && search.states.len() < MOST_STATES
-        && let Some(Reverse((_, vertex, before))) = queue.pop()
+        && let Some((_, (vertex, before))) = queue.pop()
     {
         let to = place(vertex);
         let words = &mut known[vertex as usize];
@@ -80,10 +79,10 @@ pub fn alternatives(
         let number = search.states.len() as u32;
         search.states.push(state);
         for &(next, edge) in roadmap.neighbours(vertex) {
-            queue.push(Reverse(((state.length + edge + field.length(next)).to_bits(), next, number)));
+            queue.push(state.length + edge + field.length(next), (next, number));
         }
         if field.sees_goal(vertex) {
-            queue.push(Reverse(((state.length + (goal - to).norm()).to_bits(), goal_number, number)));
+            queue.push(state.length + (goal - to).norm(), (goal_number, number));
         }
     }
     found

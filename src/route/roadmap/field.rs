@@ -2,9 +2,8 @@
 
 use super::free::FreeSpace;
 use super::graph::Roadmap;
+use crate::base::frontier::Frontier;
 use crate::base::geometry::Vec2;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// The way to a goal from the vertices of a roadmap.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,9 +25,8 @@ impl DistanceField {
         let mut lengths: Vec<f64> = vertices.iter().zip(&sees_goal).map(straight).collect();
         let mut next = vec![None; vertices.len()];
         let finite = (0_u32..).zip(&lengths).filter(|(_, length)| length.is_finite());
-        let mut queue: BinaryHeap<_> = finite.map(|(k, length)| Reverse((length.to_bits(), k))).collect();
-        while let Some(Reverse((bits, at))) = queue.pop() {
-            let length = f64::from_bits(bits);
+        let mut queue: Frontier<u32> = finite.map(|(k, length)| (*length, k)).collect();
+        while let Some((length, at)) = queue.pop() {
             if length > lengths[at as usize] {
                 continue;
             }
@@ -36,7 +34,7 @@ impl DistanceField {
                 if length + edge < lengths[other as usize] {
                     lengths[other as usize] = length + edge;
                     next[other as usize] = Some(at);
-                    queue.push(Reverse(((length + edge).to_bits(), other)));
+                    queue.push(length + edge, other);
                 }
             }
         }
@@ -66,14 +64,13 @@ impl DistanceField {
         }
         // In the order of length over each vertex, the first that can be seen.
         let candidates = (0_u32..).zip(roadmap.vertices().iter().zip(&self.lengths));
-        let mut queue: BinaryHeap<Reverse<(u64, u32)>> = candidates
+        let mut queue: Frontier<u32> = candidates
             .filter(|(_, (_, length))| length.is_finite())
-            .map(|(k, (p, length))| Reverse((((p - from).norm() + length).to_bits(), k)))
+            .map(|(k, (p, length))| ((p - from).norm() + length, k))
             .collect();
         let place = |k: u32| roadmap.vertices().get(k as usize).copied();
         let mut nearest = std::iter::from_fn(|| queue.pop());
-        let Reverse((_, first)) =
-            nearest.find(|Reverse((_, k))| place(*k).is_some_and(|p| free.is_clear(from, p)))?;
+        let (_, first) = nearest.find(|(_, k)| place(*k).is_some_and(|p| free.is_clear(from, p)))?;
         let onward = |k: &u32| self.next.get(*k as usize).copied().flatten();
         let middle = std::iter::successors(Some(first), onward).filter_map(place);
         Some(std::iter::once(from).chain(middle).chain([self.goal]).collect())

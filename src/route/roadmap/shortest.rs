@@ -3,9 +3,8 @@
 
 use super::free::FreeSpace;
 use super::graph::Roadmap;
+use crate::base::frontier::Frontier;
 use crate::base::geometry::Vec2;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// Before a vertex that is reached from the start.
 const START: u32 = u32::MAX;
@@ -18,13 +17,13 @@ pub fn shortest(roadmap: &Roadmap, free: &FreeSpace, from: Vec2, to: Vec2) -> Op
     let vertices = roadmap.vertices();
     // Of settled vertices, the vertex before.
     let mut before: Vec<Option<u32>> = vec![None; vertices.len()];
-    // Lengths in bits: for numbers that are not negative, they have the same order.
-    let mut queue: BinaryHeap<Reverse<(u64, u32, u32, u64)>> = (0_u32..)
+    // Whole lengths; of each its vertex, the one before, and the length up to it in bits, which have the same order.
+    let mut queue: Frontier<(u32, u32, u64)> = (0_u32..)
         .zip(vertices)
         .map(|(k, p)| ((p - from).norm(), (to - p).norm(), k))
-        .map(|(length, rest, k)| Reverse(((length + rest).to_bits(), k, START, length.to_bits())))
+        .map(|(length, rest, k)| (length + rest, (k, START, length.to_bits())))
         .collect();
-    while let Some(Reverse((_, at, previous, length))) = queue.pop() {
+    while let Some((_, (at, previous, length))) = queue.pop() {
         let place = vertices[at as usize];
         if before[at as usize].is_some() || (previous == START && !free.is_clear(from, place)) {
             continue;
@@ -42,7 +41,7 @@ pub fn shortest(roadmap: &Roadmap, free: &FreeSpace, from: Vec2, to: Vec2) -> Op
             if before[next as usize].is_none() {
                 let length = f64::from_bits(length) + edge;
                 let estimate = length + (to - vertices[next as usize]).norm();
-                queue.push(Reverse((estimate.to_bits(), next, at, length.to_bits())));
+                queue.push(estimate, (next, at, length.to_bits()));
             }
         }
     }
