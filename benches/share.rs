@@ -106,7 +106,7 @@ fn measure(prepared: &PreparedWorld, columns: &[usize], (steps, rounds): (usize,
     for round in 0..rounds {
         let program = &prepared.program;
         let mut state = State::new(program.layout, program.scenario.agents.len());
-        let mut scratch = Scratch::new();
+        let mut scratch = Scratch::default();
         let mut readings = Readings::default();
         let mut monitors: Vec<Monitor> = columns.iter().filter_map(|c| prepared.monitor(*c).ok()).collect();
         let lanes = match program.layout {

@@ -68,6 +68,98 @@ fn headway_limits_the_driving_speed_to_gap_over_headway() {
     }
 }
 
+/// A berth is a gap that is left over: what remains of it limits the speed.
+#[test]
+fn a_berth_is_taken_off_the_gap() {
+    let behind = Person { headway: 0.8, berth: 0.2, a: 0.0, ..looking(p(0.0, 0.0), p(1.0, 0.0), 1.3) };
+    let ahead = Person { towards: p(1.0, 0.0), a: 0.0, ..looking(p(1.1, 0.0), p(0.0, 0.0), 0.5) };
+    for layout in LAYOUTS {
+        let mut run = crowd(vec![behind.clone(), ahead.clone()], "0.01").start(layout);
+        run.steps(1);
+        let wanted = (0.6 - 0.2) / 0.8;
+        let speed = wanted + (1.0 - wanted) * (-0.01_f64 / 0.5).exp();
+        assert_near(run.velocity(0), p(speed, 0.0), &format!("{layout:?}"));
+    }
+}
+
+/// The force is `1 - o cos psi` times as strong, for each by its own o.
+#[test]
+fn who_comes_towards_one_is_felt_more_than_who_walks_along() {
+    let way = p(-2.0, -0.3);
+    let plain = way.normalize() * (140.0 * ((0.5 - way.norm()) / 0.35).exp());
+    for (towards, factor) in [(p(-1.0, 0.0), 1.4), (p(1.0, 0.0), 0.6), (p(0.0, 1.0), 1.0)] {
+        let one = Person { oncoming: 0.4, ..looking(p(0.0, 0.0), p(1.0, 0.0), 1.0) };
+        let other = Person { towards, ..looking(p(2.0, 0.3), p(0.0, 0.0), 1.0) };
+        for layout in LAYOUTS {
+            let run = crowd(vec![one.clone(), other.clone()], "0.01").start(layout);
+            assert_near(run.force(0), plain * factor, &format!("{layout:?} {towards}"));
+            assert_near(run.force(1), -plain, &format!("{layout:?} {towards}, the other"));
+        }
+    }
+}
+
+/// Two who meet exactly head-on, without noise: without manners they stand before each other, with them both step right.
+#[test]
+fn who_keep_right_pass_each_other() {
+    let meet = |keep_right: f64| {
+        let walker = |x: f64, ahead: f64| Person {
+            keep_right,
+            foresight: 1.5,
+            tau: 0.25,
+            radius: 0.2,
+            ..looking(p(x, 0.0), p(ahead, 0.0), 1.3)
+        };
+        crowd(vec![walker(-4.0, 1.3), walker(4.0, -1.3)], "0.01")
+    };
+    for layout in LAYOUTS {
+        let (mut apart, mut right) = (meet(0.0).start(layout), meet(0.1).start(layout));
+        apart.steps(800);
+        assert!(apart.at(0).x < 0.0 && apart.at(1).x > 0.0, "{}", apart.at(0));
+        right.steps(300);
+        assert!(right.at(0).y < -0.1 && right.at(1).y > 0.1, "{}", right.at(0));
+        right.steps(500);
+        assert!(right.at(0).x > 4.0 && right.at(1).x < -4.0, "{}", right.at(0));
+    }
+}
+
+/// Somebody slow before two who push, without contact: composed, never faster than wanted; without composure, faster.
+#[test]
+fn nobody_composed_is_pushed_beyond_the_own_speed() {
+    let fastest = |composure: f64, layout: Layout| {
+        let walker = |x: f64, drive: f64| Person {
+            composure,
+            tau: 0.25,
+            a: 400.0,
+            ..looking(p(x, 0.0), p(drive, 0.0), drive)
+        };
+        let mut run =
+            crowd(vec![walker(0.0, 0.8), walker(-0.7, 1.3), walker(-1.4, 1.3)], "0.01").start(layout);
+        let mut fastest = 0.0_f64;
+        for _ in 0..400 {
+            run.steps(1);
+            fastest = fastest.max(run.velocity(0).x);
+        }
+        fastest
+    };
+    for layout in LAYOUTS {
+        assert!(fastest(1.0, layout) <= 0.8 + 1e-9, "{}", fastest(1.0, layout));
+        assert!(fastest(0.0, layout) > 0.9, "{}", fastest(0.0, layout));
+    }
+}
+
+#[test]
+fn walls_have_their_share_of_the_force() {
+    for layout in LAYOUTS {
+        let force = |walls: f64| {
+            let one = Person { walls, ..looking(p(0.0, 0.6), p(1.0, 0.0), 1.0) };
+            let obstacles = vec![wall(p(-5.0, 0.0), p(5.0, 0.0))];
+            Crowd { obstacles, ..crowd(vec![one], "0.01") }.start(layout).force(0)
+        };
+        assert_near(force(1.5), force(1.0) * 1.5, &format!("{layout:?}"));
+        assert!(force(1.0).y > 1.0);
+    }
+}
+
 #[test]
 fn a_stream_that_keeps_headway_never_walks_backwards() {
     for layout in LAYOUTS {

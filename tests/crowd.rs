@@ -33,6 +33,11 @@ pub(crate) struct Person {
     pub noise: f64,
     pub foresight: f64,
     pub headway: f64,
+    pub composure: f64,
+    pub oncoming: f64,
+    pub keep_right: f64,
+    pub berth: f64,
+    pub walls: f64,
     pub hold: f64,
     pub present: bool,
     pub particle: Option<Particle>,
@@ -62,6 +67,11 @@ pub(crate) fn person(at: Vec2) -> Person {
         noise: 0.0,
         foresight: 0.0,
         headway: 0.0,
+        composure: 0.0,
+        oncoming: 0.0,
+        keep_right: 0.0,
+        berth: 0.0,
+        walls: 1.0,
         hold: 0.0,
         present: true,
         particle: None,
@@ -87,6 +97,11 @@ impl Person {
             Parameter::Noise => self.noise,
             Parameter::Foresight => self.foresight,
             Parameter::Headway => self.headway,
+            Parameter::Composure => self.composure,
+            Parameter::Oncoming => self.oncoming,
+            Parameter::KeepRight => self.keep_right,
+            Parameter::Berth => self.berth,
+            Parameter::Walls => self.walls,
             Parameter::Hold => self.hold,
             Parameter::Attention => 1.0,
             // Nobody is of the collision-free speed model.
@@ -191,7 +206,7 @@ impl Crowd {
     pub(crate) fn start(&self, layout: Layout) -> Run {
         let program = self.program();
         let mut state = State::new(layout, self.people.len());
-        let mut scratch = Scratch::new();
+        let mut scratch = Scratch::default();
         self.load(&mut state, 0, 0);
         refresh(&program, &mut state, &mut scratch, Mask::lane(0));
         Run { program, state, scratch }

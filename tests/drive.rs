@@ -464,7 +464,7 @@ fn a_walk_whose_direction_turns_is_of_second_order_in_the_step() {
                 let scene = scenario(vec![agent(start, velocity, route.clone())]);
                 let scene = Scenario { clock: Clock::Stepped(Decimal::parse(step).unwrap()), ..scene };
                 let program = Program { layout, ..Program::new(Arc::new(scene)) };
-                let (mut state, mut scratch) = (State::new(layout, 1), Scratch::new());
+                let (mut state, mut scratch) = (State::new(layout, 1), Scratch::default());
                 load(&program, &mut state, 0, key(0), None).unwrap();
                 refresh(&program, &mut state, &mut scratch, Mask::lane(0));
                 for _ in 0..steps {

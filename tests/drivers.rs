@@ -135,7 +135,7 @@ impl Run {
         let mut program = Program::driven(Arc::new(scenario), drivers);
         program.layout = layout;
         let state = State::new(layout, program.scenario.agents.len());
-        Self { program, state, scratch: Scratch::new() }
+        Self { program, state, scratch: Scratch::default() }
     }
 
     fn load(mut self, lane: usize, index: u64, advice: Option<(usize, usize)>) -> Self {

@@ -291,7 +291,7 @@ fn eight_different_trials_side_by_side_each_have_their_own_forces() {
     let scenes: Vec<Crowd> = (0..8).map(|_| random(30, 7.0, kind, &mut rng)).collect();
     let program = scenes[0].program();
     let mut state = State::new(Layout::Trials, 30);
-    let mut scratch = Scratch::new();
+    let mut scratch = Scratch::default();
     for (lane, scene) in scenes.iter().enumerate() {
         scene.load(&mut state, lane, lane as u64);
         // One after the other: what was refreshed before must stay.

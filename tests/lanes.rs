@@ -70,7 +70,7 @@ fn all_levels_have_the_same_bits() {
 /// Bits of trial `index` after `steps` steps, alone in `lane`.
 fn alone(scene: &Crowd, program: &Program, index: u64, lane: usize, steps: usize) -> Vec<u64> {
     let mut state = State::new(Layout::Trials, scene.people.len());
-    let mut scratch = Scratch::new();
+    let mut scratch = Scratch::default();
     scene.load(&mut state, lane, index);
     refresh(program, &mut state, &mut scratch, Mask::lane(lane));
     for _ in 0..steps {
@@ -101,7 +101,7 @@ fn dense_early_ending_late_starting_and_diverging_neighbours_move_no_byte() {
     lost.people[9].at = p(f64::NAN, 1.0);
     let program = quiet.program();
     let mut state = State::new(Layout::Trials, 20);
-    let mut scratch = Scratch::new();
+    let mut scratch = Scratch::default();
     quiet.load(&mut state, 3, 33);
     quiet.load(&mut state, 6, 66);
     dense.load(&mut state, 1, 11);
@@ -139,12 +139,13 @@ fn a_scratch_holds_no_part_of_the_state() {
         let start = |index: u64| {
             let mut state = State::new(layout, 25);
             scene.load(&mut state, 0, index);
-            refresh(&program, &mut state, &mut Scratch::new(), Mask::lane(0));
+            refresh(&program, &mut state, &mut Scratch::default(), Mask::lane(0));
             state
         };
         let (mut a, mut b) = (start(1), start(2));
         let (mut own_a, mut own_b) = (a.clone(), b.clone());
-        let (mut shared, mut scratch_a, mut scratch_b) = (Scratch::new(), Scratch::new(), Scratch::new());
+        let (mut shared, mut scratch_a, mut scratch_b) =
+            (Scratch::default(), Scratch::default(), Scratch::default());
         for _ in 0..40 {
             step(&program, &mut a, &mut shared);
             step(&program, &mut b, &mut shared);

@@ -137,7 +137,9 @@ fn mutated(text: &str, changes: &[(usize, Change)]) -> String {
 fn front_end(scenario: &str, properties: &str) -> Result<(), TestCaseError> {
     let left_out = |requests: Vec<Request>| {
         let mut files = Files::default();
-        requests.into_iter().for_each(|request| files.provide(request.path, Err("left out".to_owned())));
+        for request in requests {
+            files.provide(request.path, Err("left out".to_owned()));
+        }
         files
     };
     let Front { sources, misread, found, study, .. } = Front::of(scenario, properties, left_out);

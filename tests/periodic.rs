@@ -167,7 +167,7 @@ fn a_list_of_neighbours_outlives_a_walk_across_the_seam() {
     // The list is kept from step to step; beside one that is made anew in each.
     let mut kept = ring(0.0, true).start(Layout::Trials);
     for _ in 0..60 {
-        let mut fresh = smc::kernel::Scratch::new();
+        let mut fresh = smc::kernel::Scratch::default();
         let mut state = kept.state.clone();
         kept.steps(2);
         for _ in 0..2 {

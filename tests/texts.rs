@@ -40,7 +40,7 @@ impl Front {
         };
         let (study, found) = compile(&input);
         let own = own_errors(found.clone(), &misread, &input);
-        Self { misread, found, own, study, sources }
+        Self { sources, misread, found, own, study }
     }
 
     /// The same of texts that name no files.

@@ -13,7 +13,7 @@ pub struct Preset {
 }
 
 /// All presets.
-pub static PRESETS: [Preset; 3] = [
+pub static PRESETS: [Preset; 4] = [
     Preset {
         name: "helbing2000",
         model: Kind::Sfm,
@@ -30,6 +30,14 @@ pub static PRESETS: [Preset; 3] = [
                  mass, driving speeds and contact of helbing2000",
     },
     Preset {
+        name: "smc2",
+        model: Kind::Sfm,
+        source: "this project's own, fitted to exits of 0.7 to 1.2 m, to streams and to counterflow as they were measured in the \
+                 HERMES experiments, and to head-on pairs: isotropic, A = 220 N, B = 0.24 m, foresight 1.7 s, headway 0.45 s \
+                 with a berth of 0.04 m, tau = 0.25 s, radii 0.145 to 0.185 m, oncoming 0.33, keep_right 0.07 m, composure 1, \
+                 walls 1.5; mass, driving speeds and contact of helbing2000",
+    },
+    Preset {
         name: "cfs2",
         model: Kind::Cfs,
         source: "the defaults of the collision-free speed model, version 2, in JuPedSim 1.4.2 (after Tordeux, Chraibi, \
@@ -40,9 +48,27 @@ pub static PRESETS: [Preset; 3] = [
 
 /// The law that a preset gives a parameter; `None` for an unknown preset or a parameter that it leaves open.
 pub fn law(preset: &str, parameter: Parameter) -> Option<Law> {
-    use Parameter::{A, B, Foresight, Headway, K1, K2, Mass, Radius, Speed, Tau};
+    use Parameter::{
+        A, B, Berth, Composure, Foresight, Headway, K1, K2, KeepRight, Mass, Oncoming, Radius, Speed, Tau,
+        Walls,
+    };
     let (radii, special): ((f64, f64), &[(Parameter, f64)]) = match preset {
         "smc1" => ((0.18, 0.22), &[(A, 140.0), (B, 0.35), (Foresight, 1.5), (Headway, 0.65), (Tau, 0.25)]),
+        "smc2" => (
+            (0.145, 0.185),
+            &[
+                (A, 220.0),
+                (B, 0.24),
+                (Foresight, 1.7),
+                (Headway, 0.45),
+                (Berth, 0.04),
+                (Tau, 0.25),
+                (Oncoming, 0.33),
+                (KeepRight, 0.07),
+                (Composure, 1.0),
+                (Walls, 1.5),
+            ],
+        ),
         "cfs2" => ((0.2, 0.2), &[(Radius, 0.2)]),
         "helbing2000" => ((0.25, 0.35), &[(A, 2000.0), (B, 0.08), (Tau, 0.5)]),
         _ => return None,

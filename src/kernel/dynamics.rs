@@ -24,10 +24,11 @@
 //! the next state (`speed`), so that 2 and 4 are its step of Euler.
 //!
 //! In 3 v0 is at most what the headway to those ahead allows (`force::ahead`), as it was at the beginning of the step. An
-//! agent that stands, and so has no v0, is driven back to where it came to rest (`rest`).
+//! agent that stands, and so has no v0, is driven back to where it came to rest (`rest`). Of a push some leave out a part (`composure`).
 
 use super::behaviour;
 use super::cells::Cells;
+use super::composure;
 use super::contact::Contacts;
 use super::driver;
 use super::force::pair::Sum;
@@ -57,7 +58,7 @@ pub struct Scratch {
     pub(super) cells: Cells,
     pub(super) contacts: Contacts,
     sums: Vec<Sum>,
-    /// The slowness that the room ahead imposes in the collision-free speed model.
+    /// As `sums`, of the room ahead in the collision-free speed model.
     pub(super) rooms: Vec<Sum>,
     /// Positions at which `contacts` was made.
     seen_x: Vec<Lanes>,
@@ -73,17 +74,13 @@ pub struct Scratch {
 }
 
 impl Default for Scratch {
+    /// For the best vectors that this machine has.
     fn default() -> Self {
-        Self::new()
+        Self::at_level(Level::new())
     }
 }
 
 impl Scratch {
-    /// For the best vectors that this machine has.
-    pub fn new() -> Self {
-        Self::at_level(Level::new())
-    }
-
     /// For given vectors. Results have the same bits at every level; this serves tests and measurements.
     pub fn at_level(level: Level) -> Self {
         Self {
@@ -132,7 +129,7 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
     dispatch!(scratch.level, simd => {
         find_forces(simd, program, state, scratch);
         let slots = state.layout.slots_of(lanes);
-        keep_forces(simd, state, scratch, slots);
+        keep_forces(simd, program, state, scratch, slots);
         speed::set(simd, program, state, scratch, slots);
     });
 }
@@ -207,13 +204,18 @@ fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut
 }
 
 #[inline(always)]
-fn keep_forces<S: Simd>(simd: S, state: &mut State, scratch: &Scratch, lanes: Mask) {
+fn keep_forces<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &Scratch, lanes: Mask) {
     for (block, sum) in scratch.sums.iter().enumerate() {
         for part in parts(simd) {
             let here = part.mask(state.present[block] & lanes);
-            part.store_in(here, part.load(&sum.x), &mut state.motion.fx[block]);
-            part.store_in(here, part.load(&sum.y), &mut state.motion.fy[block]);
-            part.store_in(here, part.load(&sum.slowness), &mut state.driving.slowness[block]);
+            let mut force = (part.load(&sum.x), part.load(&sum.y));
+            let slowness = part.load(&sum.slowness);
+            if program.forces.manners {
+                force = composure::followed(part, state, block, force, slowness);
+            }
+            part.store_in(here, force.0, &mut state.motion.fx[block]);
+            part.store_in(here, force.1, &mut state.motion.fy[block]);
+            part.store_in(here, slowness, &mut state.driving.slowness[block]);
         }
     }
 }
@@ -330,12 +332,10 @@ impl Mover<'_> {
         (vx, vy): (Doubles<S>, Doubles<S>),
     ) -> (Doubles<S>, Doubles<S>) {
         let (decay, speed) = (part.load(&state.bodies.decay[block]), part.load(&state.driving.speed[block]));
-        let drive = if self.program.forces.ahead.is_some() {
-            let slowness = part.load(&state.driving.slowness[block]);
-            (slowness * speed).simd_gt(part.c(1.0)).select(part.c(1.0) / slowness, speed)
-        } else {
-            speed
-        };
+        let mut drive = speed;
+        if self.program.forces.ahead.is_some() {
+            drive = composure::allowed(part, speed, part.load(&state.driving.slowness[block]));
+        }
         let (mut wish_x, mut wish_y) =
             (drive * part.load(&state.driving.ex[block]), drive * part.load(&state.driving.ey[block]));
         // Who moves by themselves (decay 1) has no place to hold.
@@ -353,7 +353,10 @@ impl Mover<'_> {
             return (vx, vy);
         }
         let (nx, ny) = self.draws.normals(part, words);
-        let kick = part.load(&state.bodies.kick[block]);
+        let mut kick = part.load(&state.bodies.kick[block]);
+        if self.program.forces.manners {
+            kick *= composure::liveliness(part, state, block, (speed, drive));
+        }
         (vx + kick * nx, vy + kick * ny)
     }
 
@@ -470,7 +473,7 @@ fn travel<S: Simd>(
 fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut Scratch) {
     find_forces(simd, program, state, scratch);
     let occupied = state.layout.slots_of(state.occupied);
-    keep_forces(simd, state, scratch, occupied);
+    keep_forces(simd, program, state, scratch, occupied);
     speed::set(simd, program, state, scratch, occupied);
     let mut diverged = Mask::NONE;
     for block in 0..state.motion.x.len() {

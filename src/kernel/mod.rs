@@ -7,6 +7,7 @@ mod barrier;
 pub mod behaviour;
 mod cells;
 pub mod code;
+mod composure;
 mod contact;
 pub mod driver;
 pub mod dynamics;

@@ -69,6 +69,10 @@ impl Parameters {
             }
             values[Parameter::Radius as usize] = particle.radius(values[Parameter::Radius as usize]);
             values[Parameter::Tau as usize] *= particle.tau_factor;
+            // Groups pass through each other, so as bodies they have no manners.
+            for manner in Parameter::MANNERS {
+                values[manner as usize] = 0.0;
+            }
             values[Parameter::A as usize] *= many;
             values[Parameter::Noise as usize] /= many.sqrt();
         }

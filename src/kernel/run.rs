@@ -68,7 +68,7 @@ impl<'p> Run<'p> {
     pub fn new(program: &'p Program) -> Self {
         Self {
             state: State::new(program.layout, program.scenario.agents.len()),
-            scratch: Scratch::new(),
+            scratch: Scratch::default(),
             changes: Default::default(),
             changing: Mask::NONE,
             horizon: program.scenario.horizon,

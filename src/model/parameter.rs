@@ -165,6 +165,16 @@ parameters! {
         FORCE { dimension: Dimension::TIME, default: Some(0.0), shown: Shown::UnlessDefault }
     Headway "headway" "time that separates an agent at its driving speed from the one ahead who walks the same way" =
         FORCE { dimension: Dimension::TIME, default: Some(0.0), shown: Shown::UnlessDefault }
+    Composure "composure" "share of a push beyond its driving speed that an agent does not follow; as far it stands without noise where it is held up" =
+        FORCE { range: Range::Share, default: Some(0.0), shown: Shown::UnlessDefault }
+    Oncoming "oncoming" "how much more those who come towards an agent are felt than those who walk along; at 1 twice, and not at all" =
+        FORCE { range: Range::Share, default: Some(0.0), shown: Shown::UnlessDefault }
+    KeepRight "keep_right" "how far an agent keeps to the right of those who come towards it" =
+        FORCE { dimension: Dimension::LENGTH, default: Some(0.0), shown: Shown::UnlessDefault }
+    Berth "berth" "gap that an agent with a headway keeps to the one ahead even where both stand" =
+        FORCE { dimension: Dimension::LENGTH, default: Some(0.0), shown: Shown::UnlessDefault }
+    Walls "walls" "how strongly barriers are felt, as a share of the social force" =
+        FORCE { default: Some(1.0), shown: Shown::UnlessDefault }
     Hold "hold" "largest speed at which an agent that stands returns to its place" =
         USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, default: Some(0.3), shown: Shown::UnlessDefault }
     K1 "k1" "body compression, in contact only" = FIXED { dimension: Dimension::STIFFNESS }
@@ -200,6 +210,9 @@ parameters! {
 }
 
 impl Parameter {
+    /// Those of how people treat each other beyond the social force; without any of them a scene costs less.
+    pub const MANNERS: [Self; 4] = [Self::Composure, Self::Oncoming, Self::KeepRight, Self::Berth];
+
     /// Its row.
     pub const fn description(self) -> &'static Description {
         const TABLE: &[Description; Parameter::COUNT] = &PARAMETERS;

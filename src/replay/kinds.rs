@@ -23,12 +23,13 @@ const USUAL: &str = "helbing2000";
 const CHANGING: [&str; 3] = ["heading", "speed", "route"];
 
 /// Parameters of the kinds without forces: no force, and the time in which velocities return to the recorded ones.
-const FREE: [(&str, &str); 6] = [
+const FREE: [(&str, &str); 7] = [
     ("A", "0 N"),
     ("A2", "0 N"),
     ("k1", "0 kg/s^2"),
     ("k2", "0 kg/(m s)"),
     ("headway", "0 s"),
+    ("composure", "0"),
     ("tau", "0.5 s"),
 ];
 

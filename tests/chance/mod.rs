@@ -51,7 +51,7 @@ impl Batch {
         let mut program = Program::new(scenario.clone());
         program.layout = layout;
         let state = State::new(layout, scenario.agents.len());
-        let mut batch = Self { program, state, scratch: Scratch::new() };
+        let mut batch = Self { program, state, scratch: Scratch::default() };
         let mut lanes = Mask::NONE;
         for (lane, index) in trials {
             let key = TrialKey { seed: 9, index, branch: 0 };

@@ -223,7 +223,7 @@ fn check(
         codes.push((Code::compile(&scenario, &[], &signals[k..=k]), &[], &signals[k..=k]));
     }
     let mut readings: Vec<[Readings; 2]> = codes.iter().map(|_| Default::default()).collect();
-    let mut scratch = Scratch::new();
+    let mut scratch = Scratch::default();
     for step in 0..6 {
         let mut state = state(agents, shape, bodies, (seed, step), if step == 3 { odd } else { 0 });
         dynamics::refresh(&program, &mut state, &mut scratch, Mask::lane(0));

@@ -11,7 +11,7 @@ const NEVER: [f64; LANES] = [f64::INFINITY; LANES];
 
 /// Time and variables of every state of a trial, up to the horizon.
 pub(crate) fn trace(program: &Program, seed: u64, index: u64) -> Vec<(f64, Vec<f64>)> {
-    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
+    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::default());
     start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).unwrap();
     let mut states = Vec::new();
     loop {
@@ -114,7 +114,7 @@ fn tables_and_code_take_the_same_way_to_the_last_bit() {
 #[test]
 fn a_lane_is_a_trial() {
     let program = program(MIXED);
-    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
+    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::default());
     for lane in 0..8 {
         let key = TrialKey { seed: 3, index: 10 + lane as u64, branch: 0 };
         start::load(&program, &mut state, lane, key, None).unwrap();
@@ -172,7 +172,7 @@ fn a_stepped_clock_sees_the_same_jumps() {
     let stepped = program(&MIXED.replace("horizon = 30 s", "horizon = 30 s\nstep = 0.25 s"));
     for index in 0..20 {
         let jumps = trace(&free, 8, index);
-        let (mut state, mut scratch) = (State::new(stepped.layout, 0), Scratch::new());
+        let (mut state, mut scratch) = (State::new(stepped.layout, 0), Scratch::default());
         start::load(&stepped, &mut state, 0, TrialKey { seed: 8, index, branch: 0 }, None).unwrap();
         for tick in 1..=120u64 {
             dynamics::step(&stepped, &mut state, &mut scratch);

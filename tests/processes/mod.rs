@@ -36,7 +36,7 @@ pub(crate) fn shown(world: &World, seed: u64, trials: u64) -> Vec<Shown> {
     let mut monitors: Vec<_> = columns.iter().map(|&c| prepared.monitor(c).unwrap()).collect();
     for first in (0..trials).step_by(LANES) {
         let mut state = State::new(prepared.program.layout, 0);
-        let (mut scratch, mut readings) = (Scratch::new(), Readings::default());
+        let (mut scratch, mut readings) = (Scratch::default(), Readings::default());
         for lane in 0..LANES {
             let key = TrialKey { seed, index: first + lane as u64, branch: 0 };
             start::load(&prepared.program, &mut state, lane, key, None).unwrap();

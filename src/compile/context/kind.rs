@@ -37,7 +37,7 @@ pub(crate) fn default_law(parameter: Parameter, limit: Option<&Law>) -> Option<L
 }
 
 /// The parameters of a kind as far as they are known.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Kind {
     /// The kind of the language from which it starts.
     pub(crate) base: model::Kind,
@@ -50,6 +50,19 @@ pub(crate) struct Kind {
     pub(crate) search: SearchRule,
     /// A law for each parameter.
     pub(crate) laws: [Option<Law>; Parameter::COUNT],
+}
+
+impl Default for Kind {
+    fn default() -> Self {
+        Self {
+            base: model::Kind::default(),
+            straight: false,
+            planning: Planning::default(),
+            gait: GaitRule::default(),
+            search: SearchRule::default(),
+            laws: [const { None }; Parameter::COUNT],
+        }
+    }
 }
 
 impl Kind {

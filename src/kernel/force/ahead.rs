@@ -13,7 +13,13 @@
 //! 1512.05597); cos^4 lets it end gradually at the side. It pushes nobody back, so that a stream of people
 //! with lambda = 1 slows down and never walks backwards. Those who stand or come towards one are passed by the social force.
 //!
-//! Both are felt as far as the social force. With the velocities of the last half kick, the step is of first order here.
+//! *Manners.* An agent with `oncoming` o feels others (1 - o e . e') times as much: those who come towards it more than
+//! those who walk along, by which streams part into lanes (the direction rule of Xu, Chraibi, Seyfried, Transp. Res. C 133,
+//! 103464, 2021, weighs the same angle). With `keep_right` s, two who meet take each other for s farther to the left, so that
+//! both step to the right; the shift is that of half of s to the right of each. A `berth` is a gap that the headway leaves
+//! over. Composure is no matter of pairs: see `dynamics`.
+//!
+//! All are felt as far as the social force. With the velocities of the last half kick, the step is of first order here.
 
 use super::pair::{AgentsInLanes, Pair, PairTerm, Push};
 use crate::kernel::state::State;
@@ -25,9 +31,9 @@ use fearless_simd::prelude::*;
 /// A gap that is as good as none, m.
 const NO_GAP: f64 = 1e-6;
 
-/// The social force, looking ahead. With `SAME` the foresight of all bodies is the same.
+/// The social force, looking ahead. With `SAME` the foresight of all bodies is the same; without `MANNERS` nobody has any.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::kernel) struct Ahead<A, const SAME: bool>(pub(in crate::kernel) A);
+pub(in crate::kernel) struct Ahead<A, const SAME: bool, const MANNERS: bool>(pub(in crate::kernel) A);
 
 /// Numbers of a body.
 #[derive(Clone, Copy)]
@@ -42,6 +48,19 @@ pub(in crate::kernel) struct Looking<A, T> {
     /// Driving direction; none in a body that stands.
     ex: T,
     ey: T,
+    manners: Manners<T>,
+}
+
+/// How a body treats others beyond the social force.
+#[derive(Clone, Copy)]
+struct Manners<T> {
+    /// Gap that it keeps to the one ahead.
+    berth: T,
+    /// How much more those who come towards it are felt.
+    oncoming: T,
+    /// Half of the way by which it keeps to the right.
+    right_x: T,
+    right_y: T,
 }
 
 /// The pair at its closest approach, at most so many seconds ahead.
@@ -49,22 +68,23 @@ pub(in crate::kernel) struct Looking<A, T> {
 fn foreseen<S: Simd>(
     part: Part<S>,
     pair: &Pair<S>,
+    (dx, dy): (Doubles<S>, Doubles<S>),
     (vx, vy): (Doubles<S>, Doubles<S>),
     foresight: Doubles<S>,
 ) -> Pair<S> {
     let zero = part.c(0.0);
-    let closing = -(pair.dx * vx + pair.dy * vy) / (vx * vx + vy * vy + part.c(1e-300));
+    let closing = -(dx * vx + dy * vy) / (vx * vx + vy * vy + part.c(1e-300));
     let time = smaller::<S>(foresight, larger::<S>(closing, zero));
     let touch = pair.gap + pair.distance;
-    let later = Pair::new(part, (pair.dx + vx * time, pair.dy + vy * time), touch);
+    let later = Pair::new(part, (dx + vx * time, dy + vy * time), touch);
     // Who touches already is pushed as without foresight.
     let limit = larger::<S>(pair.gap, zero);
     Pair { gap: smaller::<S>(later.gap, limit), ..later }
 }
 
 #[expect(clippy::redundant_closure, reason = "only a closure can be marked for inlining")]
-impl<A: PairTerm, const SAME: bool> PairTerm for Ahead<A, SAME> {
-    const COUNT: usize = A::COUNT + 7;
+impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, SAME, MANNERS> {
+    const COUNT: usize = A::COUNT + if MANNERS { 11 } else { 7 };
     const KEEPS_HEADWAY: bool = true;
     type Of<T: Copy> = Looking<A::Of<T>, T>;
 
@@ -75,8 +95,12 @@ impl<A: PairTerm, const SAME: bool> PairTerm for Ahead<A, SAME> {
             |k| column(k),
         );
         let n = A::COUNT;
+        // Without manners the numbers mean nothing, and are not read.
+        let more = |k: usize| column(if MANNERS { n + k } else { n });
+        let manners = Manners { berth: more(7), oncoming: more(8), right_x: more(9), right_y: more(10) };
         Looking {
             term,
+            manners,
             vx: column(n),
             vy: column(n + 1),
             foresight: column(n + 2),
@@ -94,9 +118,13 @@ impl<A: PairTerm, const SAME: bool> PairTerm for Ahead<A, SAME> {
             #[inline(always)]
             |number| f(number),
         );
-        let Looking { vx, vy, foresight, headway, unfelt, ex, ey, .. } = *of;
+        let Looking { vx, vy, foresight, headway, unfelt, ex, ey, manners, .. } = *of;
+        let Manners { berth, oncoming, right_x, right_y } = manners;
+        let manners =
+            Manners { berth: f(berth), oncoming: f(oncoming), right_x: f(right_x), right_y: f(right_y) };
         Looking {
             term,
+            manners,
             vx: f(vx),
             vy: f(vy),
             foresight: f(foresight),
@@ -130,8 +158,16 @@ impl<A: PairTerm, const SAME: bool> PairTerm for Ahead<A, SAME> {
         put(n + 2, agents.field(&state.bodies[Parameter::Foresight]));
         put(n + 3, agents.field(&state.bodies[Parameter::Headway]));
         put(n + 4, -self.0.reach(part, state, agents));
-        put(n + 5, towards(&state.driving.ex));
-        put(n + 6, towards(&state.driving.ey));
+        let (ex, ey) = (towards(&state.driving.ex), towards(&state.driving.ey));
+        put(n + 5, ex);
+        put(n + 6, ey);
+        if MANNERS {
+            let aside = part.c(0.5) * agents.field(&state.bodies[Parameter::KeepRight]);
+            put(n + 7, agents.field(&state.bodies[Parameter::Berth]));
+            put(n + 8, agents.field(&state.bodies[Parameter::Oncoming]));
+            put(n + 9, aside * ey);
+            put(n + 10, -aside * ex);
+        }
     }
 
     #[inline(always)]
@@ -161,37 +197,57 @@ impl<A: PairTerm, const SAME: bool> PairTerm for Ahead<A, SAME> {
         let v = (one.vx - other.vx, one.vy - other.vy);
         let zero = part.c(0.0);
         let (felt_by_one, felt_by_other) = (pair.gap.simd_gt(one.unfelt), pair.gap.simd_gt(other.unfelt));
-        let later = foreseen(part, pair, v, one.foresight);
-        let (on_one, mut on_other) = self.force_at(part, &later, one, other);
-        let mut way = (later.dx, later.dy);
-        let on_one = felt_by_one.select(on_one, zero);
-        let push = (on_one * way.0, on_one * way.1);
-        if !SAME {
-            let later = foreseen(part, pair, v, other.foresight);
-            on_other = self.force_at(part, &later, one, other).1;
-            way = (later.dx, later.dy);
+        // The cosine between both driving directions.
+        let along = one.ex * other.ex + one.ey * other.ey;
+        let mut d = (pair.dx, pair.dy);
+        if MANNERS {
+            // Of two who walk the same way both shifts are the same, of two who meet they add up.
+            d.0 += one.manners.right_x - other.manners.right_x;
+            d.1 += one.manners.right_y - other.manners.right_y;
         }
-        let on_other = felt_by_other.select(on_other, zero);
-        let push_back = (on_other * way.0, on_other * way.1);
-        // In front is the other one of who looks against the way between them.
-        let gap = larger::<S>(-pair.gap, part.c(NO_GAP));
-        let same_way = (one.ex * other.ex + one.ey * other.ey).simd_gt(zero);
-        let slowness = |of: &Self::Of<Doubles<S>>, ahead: Doubles<S>| {
-            let cosine = larger::<S>(ahead * pair.inverse, zero);
-            let square = cosine * cosine;
-            of.headway * square * square / gap
-        };
-        let along = |of: &Self::Of<Doubles<S>>| pair.dx * of.ex + pair.dy * of.ey;
+        let later = foreseen(part, pair, d, v, one.foresight);
+        let (mut on_one, mut on_other) = self.force_at(part, &later, one, other);
+        let to_one = (later.dx, later.dy);
+        let mut to_other = to_one;
+        if !SAME {
+            let later = foreseen(part, pair, d, v, other.foresight);
+            on_other = self.force_at(part, &later, one, other).1;
+            to_other = (later.dx, later.dy);
+        }
+        if MANNERS {
+            on_one *= part.c(1.0) - one.manners.oncoming * along;
+            on_other *= part.c(1.0) - other.manners.oncoming * along;
+        }
+        let (on_one, on_other) = (felt_by_one.select(on_one, zero), felt_by_other.select(on_other, zero));
+        let same_way = along.simd_gt(zero);
+        let one_slower = slowness::<S, _, MANNERS>(part, pair, one, -1.0);
+        let other_slower = slowness::<S, _, MANNERS>(part, pair, other, 1.0);
         Push {
-            one: push,
-            other: push_back,
-            slowness_of_one: (same_way & felt_by_one).select(slowness(one, -along(one)), zero),
-            slowness_of_other: (same_way & felt_by_other).select(slowness(other, along(other)), zero),
+            one: (on_one * to_one.0, on_one * to_one.1),
+            other: (on_other * to_other.0, on_other * to_other.1),
+            slowness_of_one: (same_way & felt_by_one).select(one_slower, zero),
+            slowness_of_other: (same_way & felt_by_other).select(other_slower, zero),
         }
     }
 }
 
-impl<A: PairTerm, const SAME: bool> Ahead<A, SAME> {
+/// The slowness that the other one of a pair imposes by the headway, s/m; `sign` is that of the way to it. In front is who
+/// looks against the way between them.
+#[inline(always)]
+fn slowness<S: Simd, A, const MANNERS: bool>(
+    part: Part<S>,
+    pair: &Pair<S>,
+    of: &Looking<A, Doubles<S>>,
+    sign: f64,
+) -> Doubles<S> {
+    let ahead = (pair.dx * of.ex + pair.dy * of.ey) * part.c(sign);
+    let cosine = larger::<S>(ahead * pair.inverse, part.c(0.0));
+    let square = cosine * cosine;
+    let gap = if MANNERS { -pair.gap - of.manners.berth } else { -pair.gap };
+    of.headway * square * square / larger::<S>(gap, part.c(NO_GAP))
+}
+
+impl<A: PairTerm, const SAME: bool, const MANNERS: bool> Ahead<A, SAME, MANNERS> {
     #[inline(always)]
     fn force_at<S: Simd>(
         self,

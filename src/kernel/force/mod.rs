@@ -47,6 +47,8 @@ pub struct Forces {
     pub(super) second: bool,
     /// Whether any body looks ahead, and whether all have the same foresight.
     pub(super) ahead: Option<SameForesight>,
+    /// Whether anybody follows a rule of `ahead::Manners`.
+    pub(super) manners: bool,
     /// Whether any agent is of the collision-free speed model, and whether all are.
     pub(super) speeds: Option<AllOfThem>,
     /// `particles.repulsion`, or as long a list of NaN.
@@ -76,13 +78,18 @@ macro_rules! with_pair_terms {
                 let repulsion = $forces.repulsion.as_slice();
                 let term = $crate::kernel::force::Bounded { term, repulsion };
                 let term = $crate::kernel::force::Both(term, $crate::kernel::force::Swerve);
-                let $term = $crate::kernel::force::Ahead::<_, false>(term);
+                let $term = $crate::kernel::force::Ahead::<_, false, true>(term);
                 with_pair_terms!(@on $forces, $plane, $body)
             }
         } else if let (Some(true), Some((b, _)), false) = ($forces.ahead, $forces.shared, $forces.second) {
             let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
-            let $term = $crate::kernel::force::Ahead::<_, true>($term);
-            with_pair_terms!(@on $forces, $plane, $body)
+            if $forces.manners {
+                let $term = $crate::kernel::force::Ahead::<_, true, true>($term);
+                with_pair_terms!(@on $forces, $plane, $body)
+            } else {
+                let $term = $crate::kernel::force::Ahead::<_, true, false>($term);
+                with_pair_terms!(@on $forces, $plane, $body)
+            }
         } else if $forces.ahead.is_some() || $forces.closed.is_some() {
             // One term for all other scenes in which somebody looks ahead, or the plane is closed.
             let first = $crate::kernel::force::Social::<false, false>::with_own_ranges();
@@ -90,7 +97,7 @@ macro_rules! with_pair_terms {
             let term = $crate::kernel::force::Both(first, second);
             let repulsion = $forces.repulsion.as_slice();
             let term = $crate::kernel::force::Bounded { term, repulsion };
-            let $term = $crate::kernel::force::Ahead::<_, false>(term);
+            let $term = $crate::kernel::force::Ahead::<_, false, true>(term);
             with_pair_terms!(@on $forces, $plane, $body)
         } else if let Some((b, b2)) = $forces.shared {
             let $plane = $crate::kernel::plane::Open;
@@ -157,7 +164,8 @@ impl Forces {
                 .first()
                 .and_then(foresight)
                 .is_some_and(|first| scenario.agents.iter().all(|agent| foresight(agent) == Some(first)));
-        let ahead = (looks(Parameter::Foresight) || looks(Parameter::Headway)).then_some(same);
+        let manners = Parameter::MANNERS.into_iter().any(looks);
+        let ahead = (looks(Parameter::Foresight) || looks(Parameter::Headway) || manners).then_some(same);
         let mut repulsion = particles.repulsion.clone();
         repulsion.resize(scenario.agents.len(), f64::NAN);
         let of_speeds = |agent: &Agent| agent.body.kind == Kind::Cfs;
@@ -174,6 +182,7 @@ impl Forces {
             shared,
             second,
             ahead,
+            manners,
             speeds,
             repulsion,
             margin: at_least(APPROACH, 2.0 * fastest(scenario)) * dt,

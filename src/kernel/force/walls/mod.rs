@@ -112,7 +112,8 @@ impl<S: Simd> AtWalls<S> {
             Some((b, _)) => part.c(LOG2_E / b),
             None => part.c(LOG2_E) / agents.field(&state.bodies[Parameter::B]),
         };
-        let (a, least) = (agents.field(&state.bodies[Parameter::A]), part.c(LEAST));
+        let a = agents.field(&state.bodies[Parameter::A]) * agents.field(&state.bodies[Parameter::Walls]);
+        let least = part.c(LEAST);
         if forces.speeds.is_none() {
             return Self { place, r, a, rate, least };
         }
