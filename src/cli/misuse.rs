@@ -68,9 +68,11 @@ fn complaint(error: &clap::Error, strange: Option<OsString>) -> Diagnostic {
     // The tip to pass an unknown option as a value helps nobody.
     let is_help =
         |part: &String| !part.is_empty() && !part.contains("as a value") && !part.starts_with("For more");
-    let hints: Vec<String> =
-        parts.filter(is_help).map(|part| part.replacen("Usage: ", "write ", 1)).collect();
-    let hints: Vec<&str> = hints.iter().map(|hint| hint.trim_start_matches("tip: ")).collect();
+    let hint = |part: String| match part.strip_prefix("Usage: ") {
+        Some(usage) => format!("write `{usage}`"),
+        None => part.trim_start_matches("tip: ").to_owned(),
+    };
+    let hints: Vec<String> = parts.filter(is_help).map(hint).collect();
     let hint = if hints.is_empty() { "`--help` shows how".to_owned() } else { hints.join("; ") };
     complaint::argument(title.trim_start_matches("error: "), hint)
 }

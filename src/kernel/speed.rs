@@ -4,6 +4,7 @@
 //! Noise is a velocity of its own, which is added: an Ornstein-Uhlenbeck process with the standard deviation `noise` of each
 //! component, as in agents that forces move, and the relaxation time [`FORGETS`]. The model of the paper has none.
 
+use super::composure::allowed;
 use super::dynamics::Scratch;
 use super::force::pair::Sum;
 use super::program::Program;
@@ -74,7 +75,7 @@ fn turn<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask) {
 fn go<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask, room: &Sum) {
     let here = those(part, state, block, lanes);
     let (wanted, slowness) = (part.load(&state.driving.speed[block]), part.load(&room.slowness));
-    let speed = (slowness * wanted).simd_gt(part.c(1.0)).select(part.c(1.0) / slowness, wanted);
+    let speed = allowed(part, wanted, slowness);
     let (x, y) = (part.load(&state.driving.course_x[block]), part.load(&state.driving.course_y[block]));
     let (go_x, go_y) = (speed * x, speed * y);
     // What is left of the velocity is its noise.

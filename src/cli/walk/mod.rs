@@ -34,8 +34,8 @@ pub(super) fn run(arguments: &WalkCommand, colors: Colors) -> Exit {
     };
     let Some(world) = study.worlds.get(study.base) else { return Exit::Wrong };
     let sweep = || complaint::argument("walks cannot be written for a sweep", "write `--set name=value`");
-    let done = if study.worlds.len() > 2 { Err(sweep()) } else { Ok(()) };
-    let done = done
+    let is_one = if study.worlds.len() > 2 { Err(sweep()) } else { Ok(()) };
+    let done = is_one
         .and_then(|()| output::guard(arguments.output.as_deref(), &paths))
         .and_then(|()| output::guard(arguments.report.as_deref(), &paths))
         .and_then(|()| placeable(world).map_err(|fault| library::refusal(&fault)))
