@@ -14,7 +14,7 @@ import os
 import subprocess
 import tempfile
 
-MODELS = ["smc1", "cfs2", "helbing2000"]
+MODELS = ["smc2", "cfs2", "helbing2000"]
 DATA = os.path.join(os.environ["SMC_DATA"], "eth-biwi")
 SMC = os.path.abspath(os.environ.get("SMC", "smc"))
 RANK = """property safe = G<=4.8 s (forall a in others: distance(user, a) > 0.8 m)
@@ -27,7 +27,11 @@ step = 0.02 s
 tracks h = eth_biwi "{file}" {{ velocity = seen }}
 kind adult: preset {preset} {{ noise = 0.08 m/s }}
 agent user: adult from h at {time} s id {person}
-agents others: adult from h at {time} s except {person}
+groups others: adult from h at {time} s except {person} {{
+  attraction = 150 N
+  heading    = recorded + normal(0 deg, 14 deg)
+  speed      = wanted * normal(1, 0.15) in 0 m/s .. 3 m/s
+}}
 moves user for 1.6 s {{ heading from -60 deg to 60 deg by 15 deg; stop }}
 """
 
@@ -73,7 +77,7 @@ def ranking(folder, words):
 
 
 def main():
-    print("| recording, time, person | smc1 | cfs2 | helbing2000 | all three | lost by one model | lost by all three |")
+    print("| recording, time, person | smc2 | cfs2 | helbing2000 | all three | lost by one model | lost by all three |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     lost_alone, lost_together, agree = [], [], 0
     for file, rate in (("seq_hotel/obsmat.txt", 25), ("seq_eth/obsmat.txt", 15)):

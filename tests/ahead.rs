@@ -82,6 +82,43 @@ fn a_berth_is_taken_off_the_gap() {
     }
 }
 
+/// Who follows keeps pace with a share of the speed of who walks away, and of nobody who comes back.
+#[test]
+fn who_follows_keeps_pace_with_who_walks_away() {
+    let behind = Person { headway: 0.8, follow: 0.5, a: 0.0, ..looking(p(0.0, 0.0), p(1.0, 0.0), 1.3) };
+    for (pace, led) in [(0.5, 0.25), (-0.5, 0.0)] {
+        let ahead = Person { towards: p(1.0, 0.0), a: 0.0, ..looking(p(1.1, 0.0), p(pace, 0.0), 0.5) };
+        for layout in LAYOUTS {
+            let mut run = crowd(vec![behind.clone(), ahead.clone()], "0.01").start(layout);
+            run.steps(1);
+            let wanted = 0.6 / 0.8 + led;
+            let speed = wanted + (1.0 - wanted) * (-0.01_f64 / 0.5).exp();
+            assert_near(run.velocity(0), p(speed, 0.0), &format!("{layout:?} {pace}"));
+        }
+    }
+}
+
+/// Moussaïd et al. 2010: the attraction, and for who has to look back 4/s times mass, angle and velocity against the way.
+#[test]
+fn a_companion_who_is_ahead_waits_and_one_behind_does_not() {
+    let member = |at| Person { abreast: 0.7, a: 0.0, ..looking(at, p(1.2, 0.0), 1.2) };
+    // (the place of who is ahead, the angle by which the centroid lies behind a right one)
+    for (ahead, angle) in
+        [(p(1.0, 1.0), 45.0_f64), (p(1.0, 0.0), 90.0), (p(0.0, 1.0), 0.0), (p(0.5, 0.0), 90.0)]
+    {
+        for layout in LAYOUTS {
+            let both = crowd(vec![member(p(0.0, 0.0)), member(ahead)], "0.01");
+            let run = Crowd { groups: vec![(vec![0, 1], 150.0)], ..both }.start(layout);
+            // From 0.35 m to the centroid on it rises to 150 N over 0.1 m.
+            let share = ((ahead.norm() / 2.0 - 0.35) / 0.1).clamp(0.0, 1.0);
+            let pull = ahead.normalize() * (150.0 * share);
+            let brake = p(4.0 * angle.to_radians() * 80.0 * 1.2, 0.0);
+            assert_near(run.force(0), pull, &format!("{layout:?} {ahead}"));
+            assert_near(run.force(1), -pull - brake, &format!("{layout:?} {ahead}, ahead"));
+        }
+    }
+}
+
 /// The force is `1 - o cos psi` times as strong, for each by its own o.
 #[test]
 fn who_comes_towards_one_is_felt_more_than_who_walks_along() {

@@ -59,6 +59,61 @@ fn heading_and_speed_have_their_laws_around_the_recorded_ones() {
     assert!(found.iter().all(|all| all[2] == Vec2::new(0.0, 0.0)), "who stands has no intention");
 }
 
+/// In the open the wanted speed is the recorded one; between others a share of what is missing to the speed of the kind is
+/// added, which Weidmann's diagram takes at the density around; in a jam it is the speed of the kind.
+#[test]
+fn wanted_is_what_the_recorded_speed_and_the_density_around_tell() {
+    let speed = |spacing: f64| {
+        let row = |time: f64, id: u32| format!("{time},{id},{},{}\n", 0.3 * time, spacing * f64::from(id));
+        let rows = (0..2).flat_map(|time| (0..11).map(move |id| row(f64::from(time), id)));
+        let table = format!("time,id,x,y\n{}", rows.collect::<String>());
+        let text = "horizon = 1 s\nstep = 0.1 s\ntracks here = csv \"a/here.csv\" { velocity = seen }\n\
+                    kind adult: sfm preset helbing2000 { speed = 1.4 m/s; A = 0 N; radius = 0.01 m; tau = 0.01 s }\n\
+                    agents all: adult from here at 1 s { speed = wanted }\n";
+        let model = Draft::new("here.scn", text).file("a/here.csv", table).parse();
+        let model = model.unwrap_or_else(|errors| panic!("{errors}"));
+        model.trial(1, 0).unwrap().last().unwrap().agents[5].velocity.x
+    };
+    // Of the one in the middle the fifth nearest is three places off.
+    let density = |spacing: f64| 5.0 / (std::f64::consts::PI * 9.0 * spacing * spacing);
+    let left = |density: f64| 1.0 - (-1.913 * (1.0 / density - 1.0 / 5.4)).exp();
+    let wanted = |spacing: f64| 0.3 + (1.0 - left(density(spacing))) * 1.1;
+    assert!((speed(30.0) - 0.3).abs() < 1e-6, "{}", speed(30.0));
+    assert!((speed(0.4) - wanted(0.4)).abs() < 1e-6, "{} is not {}", speed(0.4), wanted(0.4));
+    assert!((0.5..1.3).contains(&wanted(0.4)));
+    assert!((speed(0.1) - 1.4).abs() < 1e-6, "{}", speed(0.1));
+}
+
+#[test]
+fn companions_share_a_heading_and_a_speed() {
+    let laws =
+        "heading = recorded + normal(0 deg, 12 deg); speed = recorded * normal(1, 0.15) in 0 m/s .. 3 m/s";
+    let alone = format!("agents all: adult from here at 1 s id 1, 2 {{ {laws} }}");
+    let together = format!("group all: adult from here at 1 s id 1, 2 {{ {laws} }}");
+    let found = ends(&together, None, 50);
+    assert!(found.iter().all(|all| (all[0] - all[1]).norm() < 1e-9), "one velocity a trial");
+    // Their mean is that of 1 m/s east and 0.5 m/s north.
+    let mean = found.iter().map(|all| all[0]).sum::<Vec2>() / 50.0;
+    assert!((mean - Vec2::new(0.5, 0.25)).norm() < 0.08, "{mean}");
+    assert!(found.iter().any(|all| (all[0] - found[0][0]).norm() > 0.05), "another in each trial");
+    assert!(ends(&alone, None, 50).iter().all(|all| (all[0] - all[1]).norm() > 0.1));
+}
+
+/// After a second nobody is where people without laws are.
+#[test]
+fn people_without_laws_are_warned_of_where_a_formula_looks_ahead() {
+    let warns = |fields: &str, seconds: &str| {
+        let people = format!("agents all: adult from here at 1 s {{ {fields} }}");
+        let query = format!("estimate P(F<={seconds} (travelled(all[1]) > 1 m)) by fixed(trials = 1)");
+        let report = parse(&people, None).unwrap().check(&query, &smc::Options::default()).unwrap();
+        report.warnings().iter().any(|one| one.code == smc::syntax::codes::Code::W0706)
+    };
+    let laws = "heading = recorded + normal(0 deg, 12 deg); speed = wanted * uniform(0.8, 1.2)";
+    assert!(warns("", "2 s") && !warns("", "1 s"));
+    assert!(!warns(laws, "2 s"));
+    assert!(!warns("heading = recorded + normal(0 deg, 12 deg)", "2 s"));
+}
+
 #[test]
 fn a_field_more_changes_no_draw_of_the_others() {
     let heading = "heading = recorded + normal(0 deg, 12 deg)";

@@ -105,6 +105,29 @@ fn a_crowd_uses_the_width_of_a_corridor_at_its_corner() {
     assert_eq!(out.consumed.counts.successes, 8);
 }
 
+/// With `aside` a way keeps off corners, but not where it would not get through or have to go far around.
+#[test]
+fn a_way_keeps_aside_of_corners_where_there_is_room() {
+    let walk = |aside: &str, walls: &str, goal: &str| {
+        let text = format!(
+            "horizon = 30 s\nstep = 0.02 s\nscene {{ {walls} }}\n\
+             kind person: sfm preset smc2 {{ radius = 0.15 m; speed = 1.3 m/s; aside = {aside} }}\n\
+             agent me: person {{ at = (1, 1); route = {goal} }}\n"
+        );
+        track(&Model::parse(&text).unwrap_or_else(|errors| panic!("{errors}")), "me")
+    };
+    let nearest = |track: &[(f64, f64)], x: f64, y: f64| {
+        track.iter().map(|at| (at.0 - x).hypot(at.1 - y)).fold(f64::INFINITY, f64::min)
+    };
+    let bend = "wall (0, 0) -- (12, 0) -- (12, 12); wall (0, 0) -- (0, 2) -- (10, 2) -- (10, 12)";
+    let [close, wide] = ["0 m", "0.25 m"].map(|aside| nearest(&walk(aside, bend, "(11, 10)"), 10.0, 2.0));
+    assert!(close < 0.32 && (0.36..0.5).contains(&wide), "{close} and {wide}");
+    // A door of 0.6 m: with 0.4 m to each side nobody would fit.
+    let door = "wall (5, -9) -- (5, 3); wall (5, 3.6) -- (5, 9)";
+    let end = *walk("0.25 m", door, "(9, 1)").last().unwrap();
+    assert!((end.0 - 9.0).hypot(end.1 - 1.0) < 0.5, "{end:?}");
+}
+
 #[test]
 fn both_layouts_find_the_same_way_and_lanes_do_not_meet() {
     let text = |others: u32| {

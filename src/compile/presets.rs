@@ -33,9 +33,9 @@ pub static PRESETS: [Preset; 4] = [
         name: "smc2",
         model: Kind::Sfm,
         source: "this project's own, fitted to exits of 0.7 to 1.2 m, to streams and to counterflow as they were measured in the \
-                 HERMES experiments, and to head-on pairs: isotropic, A = 220 N, B = 0.24 m, foresight 1.7 s, headway 0.45 s \
-                 with a berth of 0.04 m, tau = 0.25 s, radii 0.145 to 0.185 m, oncoming 0.33, keep_right 0.07 m, composure 1, \
-                 walls 1.5; mass, driving speeds and contact of helbing2000",
+                 HERMES experiments, and to head-on pairs: isotropic, A = 190 N, B = 0.24 m, foresight 1.7 s, headway 0.98 s \
+                 with a berth of 0.05 m and follow 0.42, tau = 0.28 s, radii 0.142 to 0.182 m, oncoming 0.33, keep_right \
+                 0.06 m, composure 1, walls 1.5, abreast 0.7 m, aside 0.2 m; mass, driving speeds and contact of helbing2000",
     },
     Preset {
         name: "cfs2",
@@ -49,24 +49,27 @@ pub static PRESETS: [Preset; 4] = [
 /// The law that a preset gives a parameter; `None` for an unknown preset or a parameter that it leaves open.
 pub fn law(preset: &str, parameter: Parameter) -> Option<Law> {
     use Parameter::{
-        A, B, Berth, Composure, Foresight, Headway, K1, K2, KeepRight, Mass, Oncoming, Radius, Speed, Tau,
-        Walls,
+        A, Abreast, Aside, B, Berth, Composure, Follow, Foresight, Headway, K1, K2, KeepRight, Mass,
+        Oncoming, Radius, Speed, Tau, Walls,
     };
     let (radii, special): ((f64, f64), &[(Parameter, f64)]) = match preset {
         "smc1" => ((0.18, 0.22), &[(A, 140.0), (B, 0.35), (Foresight, 1.5), (Headway, 0.65), (Tau, 0.25)]),
         "smc2" => (
-            (0.145, 0.185),
+            (0.142, 0.182),
             &[
-                (A, 220.0),
+                (A, 190.0),
                 (B, 0.24),
                 (Foresight, 1.7),
-                (Headway, 0.45),
-                (Berth, 0.04),
-                (Tau, 0.25),
+                (Headway, 0.98),
+                (Berth, 0.05),
+                (Follow, 0.42),
+                (Tau, 0.28),
                 (Oncoming, 0.33),
-                (KeepRight, 0.07),
+                (KeepRight, 0.06),
                 (Composure, 1.0),
                 (Walls, 1.5),
+                (Abreast, 0.7),
+                (Aside, 0.2),
             ],
         ),
         "cfs2" => ((0.2, 0.2), &[(Radius, 0.2)]),

@@ -50,8 +50,10 @@ impl Parameters {
         let agent = &self.scenario.agents[id.0 as usize];
         let laws = &self.laws[self.laws_of[id.0 as usize] as usize];
         let stream = Stream::of(key, agent.entity + later, Purpose::Parameter);
+        let shared = agent.start.wants_as.map(|one| Stream::of(key, one, Purpose::Parameter));
         let value = |parameter: Parameter, person: u32| {
             let law = &laws[parameter as usize];
+            let stream = shared.as_ref().filter(|_| parameter == Parameter::Speed).unwrap_or(&stream);
             let draw = || law.draw(stream.uniform(agent.body.draw_of(parameter).wrapping_add(person)));
             let value = law.constant().unwrap_or_else(draw);
             if parameter.allows(value) { Ok(value) } else { Err(Impossible { agent: id, parameter, value }) }
@@ -69,7 +71,8 @@ impl Parameters {
             }
             values[Parameter::Radius as usize] = particle.radius(values[Parameter::Radius as usize]);
             values[Parameter::Tau as usize] *= particle.tau_factor;
-            // Groups pass through each other, so as bodies they have no manners.
+            // Groups pass through each other, so as bodies they have no manners. What a follower leaves of the headway stays.
+            values[Parameter::Headway as usize] *= 1.0 - values[Parameter::Follow as usize];
             for manner in Parameter::MANNERS {
                 values[manner as usize] = 0.0;
             }

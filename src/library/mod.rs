@@ -6,6 +6,7 @@
 
 mod diagnostics;
 mod front;
+mod laws;
 mod model;
 mod models;
 mod options;

@@ -1,6 +1,6 @@
-//! What is wrong with the ways of agents, as diagnostics, before the first trial.
+//! The ways of agents and the laws of recorded ones before the first trial: what is wrong with them, as diagnostics.
 
-use super::paths;
+use super::{laws, paths};
 use crate::compile::Study;
 use crate::compile::study::World;
 use crate::route::{Doubt, DoubtKind, Ways};
@@ -8,7 +8,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 
-/// The errors and warnings about the ways in the worlds that some queries ask about; all queries where none is named. Rankings of
+/// The errors and warnings about the ways and laws in the worlds that some queries ask about; all queries where none is named. Rankings of
 /// paths get their options, which depend on the roadmap that a seed gives.
 pub fn survey(study: &mut Study, only: &[usize], seed: u64, ways: &Ways) -> Vec<Diagnostic> {
     let asked = study.queries.iter().filter(|query| only.is_empty() || only.contains(&query.index));
@@ -23,6 +23,7 @@ pub fn survey(study: &mut Study, only: &[usize], seed: u64, ways: &Ways) -> Vec<
             }
         }
     }
+    found.extend(laws::missing(study, only));
     if !is_refused(&found) {
         found.extend(paths::settle(study, seed, ways));
     }

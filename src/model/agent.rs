@@ -121,6 +121,8 @@ pub struct Start {
     pub turn: Law,
     /// Whether who goes on wants the speed of its parameter `speed`, instead of that with which it started.
     pub own_speed: bool,
+    /// The entity whose draws of heading and speed are its own too; `None` for its own entity.
+    pub wants_as: Option<u32>,
     /// Ids of the people who were seen there; none where the start is declared.
     pub seen: Vec<u32>,
 }
@@ -134,6 +136,7 @@ impl Start {
             driving: None,
             turn: Law::Constant(0.0),
             own_speed: false,
+            wants_as: None,
             seen: Vec::new(),
         }
     }

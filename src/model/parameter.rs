@@ -173,6 +173,12 @@ parameters! {
         FORCE { dimension: Dimension::LENGTH, default: Some(0.0), shown: Shown::UnlessDefault }
     Berth "berth" "gap that an agent with a headway keeps to the one ahead even where both stand" =
         FORCE { dimension: Dimension::LENGTH, default: Some(0.0), shown: Shown::UnlessDefault }
+    Follow "follow" "share of the speed of the one ahead that an agent with a headway may have beside what the gap allows" =
+        FORCE { range: Range::Share, default: Some(0.0), shown: Shown::UnlessDefault }
+    Abreast "abreast" "distance at which members of a group with attraction walk side by side; at 0 they follow each other a metre apart" =
+        FORCE { dimension: Dimension::LENGTH, default: Some(0.0), changeable: false, shown: Shown::UnlessDefault }
+    Aside "aside" "how much farther than its radius the way of an agent keeps from corners where there is room" =
+        FORCE { dimension: Dimension::LENGTH, default: Some(0.0), changeable: false, shown: Shown::UnlessDefault }
     Walls "walls" "how strongly barriers are felt, as a share of the social force" =
         FORCE { default: Some(1.0), shown: Shown::UnlessDefault }
     Hold "hold" "largest speed at which an agent that stands returns to its place" =
@@ -211,7 +217,8 @@ parameters! {
 
 impl Parameter {
     /// Those of how people treat each other beyond the social force; without any of them a scene costs less.
-    pub const MANNERS: [Self; 4] = [Self::Composure, Self::Oncoming, Self::KeepRight, Self::Berth];
+    pub const MANNERS: [Self; 5] =
+        [Self::Composure, Self::Oncoming, Self::KeepRight, Self::Berth, Self::Follow];
 
     /// Its row.
     pub const fn description(self) -> &'static Description {

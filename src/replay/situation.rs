@@ -147,6 +147,7 @@ impl Replay {
             position: one.position,
             velocity: one.velocity,
             driving: one.velocity,
+            density: 0.0,
         };
         let present: Vec<Sighting> = self.recording.at(time).into_iter().map(sighting).collect();
         let mut people = present;

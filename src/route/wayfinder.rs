@@ -16,6 +16,9 @@ struct Wayfinder {
     atlas: Arc<Atlas>,
 }
 
+/// How much longer a way may be that keeps off corners, as a share of the shortest.
+const MORE: f64 = 0.05;
+
 /// Most scenes whose atlases are kept: worlds of a sweep mostly share one.
 const KEPT: usize = 8;
 
@@ -102,7 +105,13 @@ impl Driver for Wayfinder {
         let Some(goal) = situation.goal() else { return Plan::Straight };
         let agent = &situation.scenario.agents[situation.agent.0 as usize];
         let radius = Atlas::class(situation.parameter(Parameter::Radius), is_drawn(agent));
-        match self.atlas.way(situation.position, goal, radius) {
+        let way = self.atlas.way(situation.position, goal, radius);
+        let aside = situation.parameter(Parameter::Aside);
+        let wide = way.as_ref().filter(|way| aside > 0.0 && !way.is_straight).and_then(|way| {
+            let wide = self.atlas.way(situation.position, goal, Atlas::class(radius + aside, true));
+            wide.filter(|wide| wide.length <= way.length * (1.0 + MORE) + aside)
+        });
+        match wide.or(way) {
             Some(way) if way.is_straight => Plan::Straight,
             Some(way) => Plan::Way(way.points().into()),
             None => Plan::NoWay,

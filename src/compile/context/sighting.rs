@@ -18,6 +18,23 @@ pub struct Sighting {
     pub velocity: Vec2,
     /// The velocity that this person wants to have, m/s: the mean over the memory of the track.
     pub driving: Vec2,
+    /// How many others are around, 1/m^2; 0 where that was not looked at.
+    pub density: f64,
+}
+
+/// So many of the nearest others tell the density around somebody.
+const NEAREST: usize = 5;
+
+/// Looks at how many others are around each: so many as there are nearest ones in the circle that holds them.
+fn look_around(people: &mut [Sighting]) {
+    let places: Vec<Vec2> = people.iter().map(|one| one.position).collect();
+    for one in people.iter_mut().filter(|_| places.len() > NEAREST) {
+        let mut squares: Vec<f64> =
+            places.iter().map(|place| (place - one.position).norm_squared()).collect();
+        // The nearest of all is this person.
+        let (_, square, _) = squares.select_nth_unstable_by(NEAREST, f64::total_cmp);
+        one.density = NEAREST as f64 / (std::f64::consts::PI * *square);
+    }
 }
 
 /// Who is seen at an instant, instead of what tracks of a scenario say of it.
@@ -74,7 +91,7 @@ pub(crate) enum Tracks {
 impl Tracks {
     /// Everybody at a time, by ascending id.
     pub(crate) fn at(&self, time: f64) -> Vec<Sighting> {
-        match self {
+        let mut people: Vec<Sighting> = match self {
             Self::Live { seen, memory } => {
                 let sighting = |one: &Sighting| Sighting { driving: seen.driving(one, *memory), ..*one };
                 seen.people.iter().map(sighting).collect()
@@ -86,10 +103,13 @@ impl Tracks {
                     position: o.position,
                     velocity: o.velocity,
                     driving: before(&o),
+                    density: 0.0,
                 };
                 recording.at(time).into_iter().map(sighting).collect()
             }
-        }
+        };
+        look_around(&mut people);
+        people
     }
 }
 

@@ -10,7 +10,7 @@ use crate::compile::context::{
 use crate::compile::dimension::Dimension;
 use crate::compile::people::{
     self, headed,
-    intended::{Intended, parted},
+    intended::{Intended, STANDS, parted},
     intentions, kinds, positions, recordings,
 };
 use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
@@ -189,12 +189,18 @@ fn seen_together<'a>(
         return;
     };
     let placed = recordings::onto_rims(context, recorded, chosen.people, &common.body[Parameter::Radius]);
-    let parties: Vec<Vec<Sighting>> = if decl.plural {
+    let mut parties: Vec<Vec<Sighting>> = if decl.plural {
         let at = |one: &Sighting| placed.iter().find(|other| other.id == one.id).copied().unwrap_or(*one);
         chosen.parties.iter().map(|party| party.iter().map(at).collect()).collect()
     } else {
         vec![placed]
     };
+    let drawn = decl.particle.is_none() && common.intended.is_drawn();
+    if drawn {
+        for party in &mut parties {
+            agree(party);
+        }
+    }
     if !decl.plural && decl.particle.is_some() && parties[0].is_empty() {
         people::unseen(context, &decl.name, common.body.clone(), with, people);
         return;
@@ -233,6 +239,12 @@ fn seen_together<'a>(
             let name = &decl.name.name;
             let name = if decl.plural { format!("{name}[{}]", k + 1) } else { name.clone() };
             people.join(&name, own, common.attraction);
+            if drawn && let Some(first) = own.first() {
+                let entity = people.agents[first.0 as usize].entity;
+                for one in own {
+                    people.agents[one.0 as usize].start.wants_as = Some(entity);
+                }
+            }
             rest = others;
         }
     }
@@ -252,6 +264,17 @@ impl People {
     }
 }
 
+/// Companions want what they want on the mean, all who walk.
+fn agree(party: &mut [Sighting]) {
+    let walk: Vec<&mut Sighting> = party.iter_mut().filter(|one| one.driving.norm() >= STANDS).collect();
+    let mean = walk.iter().map(|one| one.driving).sum::<Vec2>() / walk.len() as f64;
+    if mean.norm() >= STANDS {
+        for one in walk {
+            one.driving = mean;
+        }
+    }
+}
+
 /// People who are seen together as one body: at their mean, with their mean velocity, as wide as they stand and barriers
 /// let them.
 fn together(party: &[Sighting], common: &Common<'_>, barriers: &[Barrier]) -> (Sighting, Option<Particle>) {
@@ -264,6 +287,7 @@ fn together(party: &[Sighting], common: &Common<'_>, barriers: &[Barrier]) -> (S
         position,
         velocity: mean(|one| one.velocity),
         driving: mean(|one| one.driving),
+        density: party.iter().map(|one| one.density).sum::<f64>() / count,
     };
     let distances = barriers.iter().map(|barrier| barrier.obstacle.distance(position));
     let room = distances.fold(f64::INFINITY, math::at_most);

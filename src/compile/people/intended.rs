@@ -13,6 +13,8 @@ use crate::syntax::source::Span;
 pub(crate) const STANDS: f64 = 0.05;
 /// What stands for the recorded heading or speed.
 pub(crate) const RECORDED: &str = "recorded";
+/// What stands for the speed that somebody recorded would have alone.
+pub(crate) const WANTED: &str = "wanted";
 /// The function of destinations.
 const DESTINATIONS: &str = "destinations";
 /// A destination as near as this has no direction, m.
@@ -33,6 +35,11 @@ impl Intended<'_> {
     /// Whether they say something of the speed.
     pub(crate) const fn is_of_speed(&self) -> bool {
         self.speed.is_some()
+    }
+
+    /// Whether they say something of the heading or the speed.
+    pub(crate) const fn is_drawn(&self) -> bool {
+        self.turn.is_some() || self.speed.is_some()
     }
 }
 
@@ -83,12 +90,26 @@ pub(crate) fn is_recorded(expr: &Expr) -> bool {
     matches!(&expr.kind, ExprKind::Name(name) if name == RECORDED)
 }
 
+/// Whether an expression is just the recorded speed, or what that tells of the wanted one.
+pub(crate) fn is_speed(expr: &Expr) -> bool {
+    is_recorded(expr) || matches!(&expr.kind, ExprKind::Name(name) if name == WANTED)
+}
+
+/// The speed that somebody would have alone, who was seen to walk at a speed, m/s, where so many others are around, 1/m^2: of
+/// what others of the kind would lose there by Weidmann's diagram (1993), as much is added as the density leaves open. It is at
+/// least the present speed; in the open it is just that, in a jam it is the kind's.
+pub(crate) fn wanted(speed: f64, density: f64, of_kind: f64) -> f64 {
+    let left = 1.0 - math::exp(-1.913 * (1.0 / density - 1.0 / 5.4));
+    let left = math::at_least(0.0, math::at_most(left, 1.0));
+    speed + (1.0 - left) * math::at_least(of_kind - speed, 0.0)
+}
+
 fn speaks_of_recorded(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Binary(_, left, right) => speaks_of_recorded(left) || speaks_of_recorded(right),
         ExprKind::Unary(_, inner) => speaks_of_recorded(inner),
         ExprKind::Call { arguments, .. } => arguments.iter().any(speaks_of_recorded),
-        _ => is_recorded(expr),
+        _ => is_speed(expr),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::compile::context::{
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::laws::{self, distribution};
 use crate::compile::people::intended::{
-    Goals, Intended, RECORDED, STANDS, destinations, is_recorded, weights,
+    Goals, Intended, RECORDED, STANDS, WANTED, destinations, is_recorded, is_speed, wanted, weights,
 };
 use crate::model::{Body, Goal, Law, Leg, Parameter, Route, Start};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Field, Value};
@@ -117,11 +117,11 @@ fn goals_of(context: &mut Context<'_>, field: &Field) -> Lowered<Goals> {
     }
 }
 
-/// Gives somebody who was seen the intention that the fields say. Who stands has none.
+/// Gives somebody of a kind who was seen the intention that the fields say. Who stands has none.
 pub(crate) fn intend(
     context: &mut Context<'_>,
     intended: &Intended<'_>,
-    seen: &Sighting,
+    (seen, kind): (&Sighting, &Body),
     (body, start, route): (&mut Body, &mut Start, &mut Route),
 ) -> Lowered<()> {
     let speed = seen.driving.norm();
@@ -132,7 +132,8 @@ pub(crate) fn intend(
         start.turn = turn.clone();
     }
     if let Some(value) = intended.speed {
-        body[Parameter::Speed] = recorded_speed(context, value, speed)?;
+        let alone = wanted(speed, seen.density, kind[Parameter::Speed].draw(0.5));
+        body[Parameter::Speed] = recorded_speed(context, value, (speed, alone))?;
         start.own_speed = true;
     }
     if let Some(goals) = &intended.goals {
@@ -147,20 +148,22 @@ pub(crate) fn intend(
     Ok(())
 }
 
-/// The law of a speed, m/s, around that which was recorded.
-fn recorded_speed(context: &mut Context<'_>, value: &Value, speed: f64) -> Lowered<Law> {
+/// The law of a speed, m/s, around that which was recorded, or that which it tells to be wanted.
+fn recorded_speed(context: &mut Context<'_>, value: &Value, (speed, alone): (f64, f64)) -> Lowered<Law> {
     let (Value::Plain(expr) | Value::Truncated { law: expr, .. }) = value else {
         return laws::parameter_law(context, Parameter::Speed, value, &Locals::default());
     };
-    let is_law = is_recorded(expr)
+    let is_law = is_speed(expr)
         || matches!(&expr.kind, ExprKind::Binary(BinaryOp::Times, left, right)
-                if is_recorded(left) != is_recorded(right));
+                if is_speed(left) != is_speed(right));
     if !is_law && distribution(expr).is_none() {
-        let said = "`speed` must be `recorded`, or `recorded` times a number or a distribution of numbers";
+        let said = "`speed` must be `recorded` or `wanted`, or one of them times a number or a distribution of numbers";
         let hint = "write for example `speed = recorded * normal(1, 0.15) in 0 m/s .. 3 m/s`";
         return context.report(error!(E0305, value.span(), "{said}"; hint: "{hint}"));
     }
     let mut locals = Locals::default();
-    locals.bind(RECORDED, Typed::Number(Number::rounded(speed, Dimension::SPEED)));
+    for (name, speed) in [(RECORDED, speed), (WANTED, alone)] {
+        locals.bind(name, Typed::Number(Number::rounded(speed, Dimension::SPEED)));
+    }
     laws::parameter_law(context, Parameter::Speed, value, &locals)
 }

@@ -229,13 +229,13 @@ fn declare_recorded<'a>(
 /// Body, start and route of somebody who was seen.
 pub(crate) fn walker(
     context: &mut Context<'_>,
-    (body, own_speed): (&Body, bool),
+    (kind, own_speed): (&Body, bool),
     seen: &Sighting,
     route: &Route,
     intended: &Intended<'_>,
 ) -> Lowered<(Arc<Body>, Start, Route)> {
-    let (mut body, mut start, mut route) = (moving(body, seen, own_speed), start(seen), route.clone());
-    intentions::intend(context, intended, seen, (&mut body, &mut start, &mut route))?;
+    let (mut body, mut start, mut route) = (moving(kind, seen, own_speed), start(seen), route.clone());
+    intentions::intend(context, intended, (seen, kind), (&mut body, &mut start, &mut route))?;
     Ok((Arc::new(body), start, route))
 }
 

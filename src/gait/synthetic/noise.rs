@@ -145,8 +145,8 @@ mod tests {
             mean_and_cv(&values).1
         };
         let length = |s: &Shape| s.landmarks[SPANS - 1].norm();
-        // The speed changes the length with its power 0.43 and the time with -0.57.
-        let (of_length, of_time) = ((0.43f64 * 2.3).hypot(1.5) / 100.0, (0.57f64 * 2.3).hypot(2.0) / 100.0);
+        // The speed changes the length with its power 0.5 and the time with -0.5.
+        let (of_length, of_time) = ((0.5f64 * 2.3).hypot(1.5) / 100.0, (0.5f64 * 2.3).hypot(2.0) / 100.0);
         for number in [0, 1, 20] {
             let (l, t) = (cv(number, length), cv(number, |s| s.duration));
             assert!((l / of_length - 1.0).abs() < 0.06 && (t / of_time - 1.0).abs() < 0.06);

@@ -86,18 +86,17 @@ fn people_have_the_laws_of_their_fields() {
 }
 
 #[test]
-fn cadence_and_length_are_those_of_grieve_and_gear() {
+fn length_and_cadence_keep_their_ratio() {
     let gait = gait(1.72, 1.34);
     assert!((1.0 / gait.duration() - 1.87).abs() < 0.005, "{}", gait.duration());
     assert!((gait.length() - 0.72).abs() < 0.005);
-    // 64.8 (v/h)^0.57 strides a minute.
     for speed in [0.6, 1.0, 1.34, 1.8] {
         let made = straight(&gait, speed / 1.34, 600, 1);
         let (time, _) = mean_and_cv(made[1..].iter().map(|m| m.shape.duration));
         let (length, _) = mean_and_cv(made[1..].iter().map(|m| m.chord().norm()));
-        let rate = 64.8 / 30.0 * (speed / 1.72f64).powf(0.57);
-        assert!((time * rate - 1.0).abs() < 0.015, "{speed} {time}");
-        assert!((length * rate / speed - 1.0).abs() < 0.015, "{speed} {length}");
+        // Metres over steps a minute: 6.0 to 6.6e-3 in adults.
+        assert!((length * time / 60.0 - 6.37e-3).abs() < 0.1e-3, "{speed} {length} {time}");
+        assert!((length / time / speed - 1.0).abs() < 0.015, "{speed} {length} {time}");
     }
 }
 
@@ -246,5 +245,5 @@ fn a_step_has_the_same_bytes_everywhere() {
             sum = sum.rotate_left(5).wrapping_mul(0x0000_0100_0000_01b3) ^ value.to_bits();
         }
     }
-    assert_eq!(sum, 0xd4e7_c616_9dc9_c8fb, "{sum:#x}");
+    assert_eq!(sum, 0x3fcb_0334_7bd3_ef22, "{sum:#x}");
 }

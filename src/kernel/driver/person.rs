@@ -314,10 +314,11 @@ impl<'a> Person<'a> {
         law.constant().unwrap_or_else(|| law.draw(self.uniform(draw)))
     }
 
-    /// A uniform number of the agent in this trial.
+    /// A uniform number of the agent in this trial, or of its group.
     fn uniform(&self, draw: u32) -> f64 {
         let later = self.state.queues.later(self.agent, self.state.layout.trial_of(self.lane));
-        let entity = self.drive.scenario.agents[self.agent].entity + later;
+        let agent = &self.drive.scenario.agents[self.agent];
+        let entity = agent.start.wants_as.unwrap_or(agent.entity + later);
         Stream::of(self.key(), entity, Purpose::Parameter).uniform(draw)
     }
 

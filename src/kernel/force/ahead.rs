@@ -17,7 +17,10 @@
 //! those who walk along, by which streams part into lanes (the direction rule of Xu, Chraibi, Seyfried, Transp. Res. C 133,
 //! 103464, 2021, weighs the same angle). With `keep_right` s, two who meet take each other for s farther to the left, so that
 //! both step to the right; the shift is that of half of s to the right of each. A `berth` is a gap that the headway leaves
-//! over. Composure is no matter of pairs: see `dynamics`.
+//! over. With `follow` f one keeps pace with who walks away: `(g/T + f v')/cos^4 phi` at most, v' the speed of the one ahead
+//! along one's own way (safe speeds depend on the leader's: Gipps, Transp. Res. B 15, 105, 1981). In an even stream that is a
+//! headway of T (1 - f); at a door, where those ahead get away, more than that gets through. Composure is no matter of
+//! pairs: see `composure`.
 //!
 //! All are felt as far as the social force. With the velocities of the last half kick, the step is of first order here.
 
@@ -61,6 +64,8 @@ struct Manners<T> {
     /// Half of the way by which it keeps to the right.
     right_x: T,
     right_y: T,
+    /// How much nearer it follows for each m/s of the one ahead, s.
+    follow: T,
 }
 
 /// The pair at its closest approach, at most so many seconds ahead.
@@ -84,7 +89,7 @@ fn foreseen<S: Simd>(
 
 #[expect(clippy::redundant_closure, reason = "only a closure can be marked for inlining")]
 impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, SAME, MANNERS> {
-    const COUNT: usize = A::COUNT + if MANNERS { 11 } else { 7 };
+    const COUNT: usize = A::COUNT + if MANNERS { 12 } else { 7 };
     const KEEPS_HEADWAY: bool = true;
     type Of<T: Copy> = Looking<A::Of<T>, T>;
 
@@ -97,7 +102,13 @@ impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, S
         let n = A::COUNT;
         // Without manners the numbers mean nothing, and are not read.
         let more = |k: usize| column(if MANNERS { n + k } else { n });
-        let manners = Manners { berth: more(7), oncoming: more(8), right_x: more(9), right_y: more(10) };
+        let manners = Manners {
+            berth: more(7),
+            oncoming: more(8),
+            right_x: more(9),
+            right_y: more(10),
+            follow: more(11),
+        };
         Looking {
             term,
             manners,
@@ -119,9 +130,14 @@ impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, S
             |number| f(number),
         );
         let Looking { vx, vy, foresight, headway, unfelt, ex, ey, manners, .. } = *of;
-        let Manners { berth, oncoming, right_x, right_y } = manners;
-        let manners =
-            Manners { berth: f(berth), oncoming: f(oncoming), right_x: f(right_x), right_y: f(right_y) };
+        let Manners { berth, oncoming, right_x, right_y, follow } = manners;
+        let manners = Manners {
+            berth: f(berth),
+            oncoming: f(oncoming),
+            right_x: f(right_x),
+            right_y: f(right_y),
+            follow: f(follow),
+        };
         Looking {
             term,
             manners,
@@ -167,6 +183,8 @@ impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, S
             put(n + 8, agents.field(&state.bodies[Parameter::Oncoming]));
             put(n + 9, aside * ey);
             put(n + 10, -aside * ex);
+            let follow = agents.field(&state.bodies[Parameter::Follow]);
+            put(n + 11, follow * agents.field(&state.bodies[Parameter::Headway]));
         }
     }
 
@@ -220,8 +238,8 @@ impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, S
         }
         let (on_one, on_other) = (felt_by_one.select(on_one, zero), felt_by_other.select(on_other, zero));
         let same_way = along.simd_gt(zero);
-        let one_slower = slowness::<S, _, MANNERS>(part, pair, one, -1.0);
-        let other_slower = slowness::<S, _, MANNERS>(part, pair, other, 1.0);
+        let one_slower = slowness::<S, _, MANNERS>(part, pair, [one, other], -1.0);
+        let other_slower = slowness::<S, _, MANNERS>(part, pair, [other, one], 1.0);
         Push {
             one: (on_one * to_one.0, on_one * to_one.1),
             other: (on_other * to_other.0, on_other * to_other.1),
@@ -237,14 +255,19 @@ impl<A: PairTerm, const SAME: bool, const MANNERS: bool> PairTerm for Ahead<A, S
 fn slowness<S: Simd, A, const MANNERS: bool>(
     part: Part<S>,
     pair: &Pair<S>,
-    of: &Looking<A, Doubles<S>>,
+    [of, leader]: [&Looking<A, Doubles<S>>; 2],
     sign: f64,
 ) -> Doubles<S> {
     let ahead = (pair.dx * of.ex + pair.dy * of.ey) * part.c(sign);
     let cosine = larger::<S>(ahead * pair.inverse, part.c(0.0));
     let square = cosine * cosine;
-    let gap = if MANNERS { -pair.gap - of.manners.berth } else { -pair.gap };
-    of.headway * square * square / larger::<S>(gap, part.c(NO_GAP))
+    if MANNERS {
+        let gap = larger::<S>(-pair.gap - of.manners.berth, part.c(NO_GAP));
+        let leads = larger::<S>(leader.vx * of.ex + leader.vy * of.ey, part.c(0.0));
+        of.headway * square * square / (gap + of.manners.follow * leads)
+    } else {
+        of.headway * square * square / larger::<S>(-pair.gap, part.c(NO_GAP))
+    }
 }
 
 impl<A: PairTerm, const SAME: bool, const MANNERS: bool> Ahead<A, SAME, MANNERS> {

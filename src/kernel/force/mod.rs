@@ -15,9 +15,10 @@ pub(super) mod walls;
 
 use super::pace::fastest;
 use super::plane::Closed;
-use super::state::State;
-use crate::base::geometry::Vec2;
-use crate::base::math::at_least;
+use super::state::{Slot, State};
+use crate::base::geometry::{Vec2, cross};
+use crate::base::lanes::Lanes;
+use crate::base::math::{at_least, atan2};
 use crate::model::{Agent, Body, Group, Kind, Law, Parameter, Periods, Scenario};
 pub(super) use ahead::Ahead;
 pub(super) use pair::Both;
@@ -200,9 +201,35 @@ impl Forces {
 // Attraction within groups (Moussaid, Perozo, Garnier, Helbing, Theraulaz 2010): a constant force towards the centroid of
 // the n members present, on those farther than (n - 1)/2 m from it. Without lanes: groups are few, and this is the same
 // for both layouts.
+//
+// A member with `abreast` d follows all of that paper: it comes as near as (n - 1) d/2 (there the attraction fades out), and
+// who has to turn the head by an angle beyond the right one to see the centroid walks slower by that angle:
+//
+//     F = -4/s m angle v        a                    the one ahead waits until both are side by side,
+//                                 \  angle            and of three the middle one stays a little behind: a V
+//                                  c---- a right angle
 
 /// The force that drives 80 kg at 1 m/s with a relaxation time of 0.5 s, N.
 const DRIVING: f64 = 160.0;
+
+/// How strongly members slow down to see the centroid (`beta_1` of the paper), 1/s.
+const GAZE: f64 = 4.0;
+
+/// Over this length the attraction of members who walk side by side fades out, m.
+const FADE: f64 = 0.1;
+
+/// The force on a member that looks back, N: against its velocity, with the angle by which the way to the centroid lies behind.
+fn glance(state: &State, slot: Slot, way: Vec2) -> Vec2 {
+    let of = |field: &[Lanes]| field[slot.block].0[slot.lane];
+    let ahead = Vec2::new(of(&state.driving.ex), of(&state.driving.ey));
+    let behind = -way.dot(&ahead);
+    if behind <= 0.0 || of(&state.driving.speed) == 0.0 {
+        return Vec2::zeros();
+    }
+    let angle = atan2(behind, cross(ahead, way).abs());
+    let mass = of(&state.bodies[Parameter::Mass]);
+    Vec2::new(of(&state.motion.vx), of(&state.motion.vy)) * (-GAZE * angle * mass)
+}
 
 /// Members that attract each other.
 #[derive(Clone, Debug)]
@@ -253,11 +280,19 @@ impl Cohesion {
             for (slot, at) in self.members.iter().filter_map(|&member| place(member)) {
                 let way = sum / n - at;
                 let distance = way.dot(&way).sqrt();
-                if distance > 0.0 && distance > 0.5 * (n - 1.0) {
-                    let pull = way * (self.attraction / distance);
-                    sums[slot.block].x.0[slot.lane] += pull.x;
-                    sums[slot.block].y.0[slot.lane] += pull.y;
+                let abreast = state.bodies[Parameter::Abreast][slot.block].0[slot.lane];
+                let (unit, fade) = if abreast > 0.0 { (abreast, FADE) } else { (1.0, 0.0) };
+                let beyond = distance - 0.5 * (n - 1.0) * unit;
+                let mut pull = Vec2::zeros();
+                if distance > 0.0 && beyond > 0.0 {
+                    let share = if beyond < fade { beyond / fade } else { 1.0 };
+                    pull = way * (share * self.attraction / distance);
                 }
+                if abreast > 0.0 {
+                    pull += glance(state, slot, way);
+                }
+                sums[slot.block].x.0[slot.lane] += pull.x;
+                sums[slot.block].y.0[slot.lane] += pull.y;
             }
         }
     }
