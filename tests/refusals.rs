@@ -102,6 +102,7 @@ fn examine(case: &Case<'_>, base: &str) -> (Vec<Diagnostic>, Vec<Source>) {
         settings: &settings,
         velocity: None,
         models: &[],
+        calibration: None,
     };
     let mut inputs = load(names, &mut Texts(case.texts(base)));
     if let Some(study) = &mut inputs.study {

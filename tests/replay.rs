@@ -39,6 +39,7 @@ fn parsed(scenario: &str, properties: &str, tracks: &str) -> Parsed {
         settings: &[],
         velocity: None,
         models: &[],
+        calibration: None,
     };
     let parsed = parse(names, &mut texts);
     assert!(parsed.inputs.diagnostics.is_empty(), "{:?}", parsed.inputs.diagnostics);

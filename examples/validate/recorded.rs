@@ -84,7 +84,14 @@ fn of_recording(
 ) -> Result<String, Box<dyn std::error::Error>> {
     let properties = [PROPERTIES.to_owned()];
     let parsed = parse(
-        Names { scenario: MODEL, properties: &properties, settings, velocity: None, models: &[] },
+        Names {
+            scenario: MODEL,
+            properties: &properties,
+            settings,
+            velocity: None,
+            models: &[],
+            calibration: None,
+        },
         disk,
     );
     let refused = |errors: Vec<smc::syntax::diagnostic::Diagnostic>| {

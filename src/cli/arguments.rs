@@ -5,7 +5,7 @@ use super::gait::GaitCommand;
 use super::infer::InferCommand;
 use super::path::PathCommand;
 use super::plot::PlotCommand;
-use super::replay::{EvaluateCommand, FitCommand, MonitorCommand};
+use super::replay::{CalibrateCommand, EvaluateCommand, FitCommand, MonitorCommand};
 use super::simulate::choice::Keep;
 use super::simulate::destination::left_out;
 use super::terminal::ColorChoice;
@@ -57,6 +57,8 @@ pub(super) enum Verb {
     Monitor(Box<MonitorCommand>),
     /// Compare the predictions of a model with what happened in a recording.
     Evaluate(Box<EvaluateCommand>),
+    /// Measure how often verdicts of a model are true of people who were recorded.
+    Calibrate(Box<CalibrateCommand>),
     /// Fit parameters of a model to a recording.
     Fit(Box<FitCommand>),
     /// Advise a user while others are observed: rank moves for each batch of observations.
@@ -84,7 +86,7 @@ pub(super) enum Verb {
 const GROUPS: [(&str, &[&str]); 7] = [
     ("Ask", &["check", "show", "plot"]),
     ("Look", &["simulate", "path", "walk"]),
-    ("Recordings", &["infer", "monitor", "evaluate", "fit", "advise", "drift"]),
+    ("Recordings", &["infer", "monitor", "evaluate", "calibrate", "fit", "advise", "drift"]),
     ("Gait", &["gait"]),
     ("Large runs", &["shard", "merge"]),
     ("Files", &["fmt", "explain"]),

@@ -132,7 +132,10 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         })
     };
     match result {
-        Ok(Some(run)) => {
+        Ok(Some(mut run)) => {
+            for result in &mut run.results {
+                result.model = inputs.calibration.as_ref().and_then(|known| known.about(result));
+            }
             let room = report::html::MOST_NUMBERS;
             let shown = reporter.outputs.page.is_some().then(|| traces(study, &run, &call(), &budget, room));
             reporter.finish(run, shown.unwrap_or_default())

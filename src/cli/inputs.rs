@@ -164,6 +164,7 @@ fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
         settings: &model.set,
         velocity: model.velocity,
         models: &model.models,
+        calibration: model.calibration.as_deref(),
     }
 }
 

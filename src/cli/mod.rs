@@ -108,6 +108,7 @@ fn dispatch(verb: &Verb, colors: Colors) -> Exit {
         Verb::Infer(command) => infer::run(command, colors),
         Verb::Monitor(command) => replay::monitor(command, colors),
         Verb::Evaluate(command) => replay::evaluate(command, colors),
+        Verb::Calibrate(command) => replay::calibrate(command, colors),
         Verb::Fit(command) => replay::fit(command, colors),
         Verb::Advise(command) => advise::run(command, colors),
         Verb::Drift(command) => drift::run(command, colors),

@@ -35,6 +35,10 @@ pub(super) struct Model {
     /// Ask everything with people of each of these presets, whatever the scenario says: `smc1,cfs2,helbing2000`.
     #[arg(long = "models", value_name = "PRESETS", value_delimiter = ',')]
     pub(super) models: Vec<String>,
+    /// A file of `smc calibrate`: the laws of `heading = site` and `speed = site`, and beside each verdict about a calibrated property
+    /// how often such verdicts were true.
+    #[arg(long, value_name = "FILE")]
+    pub(super) calibration: Option<String>,
     /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
     /// set, as the tracks say, or else recorded; `advise`, `evaluate` and `fit` take those that are seen.
     #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]

@@ -1,6 +1,6 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
-use crate::compile::context::sighting::{Grouping, Seen};
+use crate::compile::context::sighting::{Grouping, Seen, Site};
 use crate::compile::people::intended::{beside, destinations};
 use crate::data::tracks::Velocity;
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Text, Value};
@@ -79,6 +79,8 @@ pub struct Files {
     pub velocity: Option<Velocity>,
     /// Finds groups of people; without it everybody walks alone.
     pub grouping: Option<Grouping>,
+    /// The laws of the site, where a calibration tells them.
+    pub site: Option<Site>,
 }
 
 impl Files {

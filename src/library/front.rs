@@ -9,6 +9,7 @@ use crate::compile::{Files, Input, Setting, Starts, Study, examine, own_errors, 
 use crate::data::tracks::Velocity;
 use crate::engine::overfull_starts;
 use crate::gait::model::{FIT_AGAIN, LearnedGait};
+use crate::replay::calibrate::{Calibration, written};
 use crate::syntax::ast::{Expr, Item, PropertyFile, PropertyItem, ScenarioFile, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{About, Diagnostic, Severity};
@@ -57,6 +58,8 @@ pub struct Names<'a> {
     pub velocity: Option<Velocity>,
     /// Presets of people under each of which all queries are asked; empty if the scenario alone says who walks.
     pub models: &'a [String],
+    /// The file of a calibration.
+    pub calibration: Option<&'a str>,
 }
 
 /// All that was read, and what was found wrong with it.
@@ -72,6 +75,8 @@ pub struct Inputs {
     pub prints: Vec<(String, Fingerprint)>,
     /// What compilation yields, if nothing is wrong.
     pub study: Option<Study>,
+    /// How often the model was right about recorded people, where a file says so.
+    pub calibration: Option<Calibration>,
 }
 
 /// What a call names, read and parsed but not compiled.
@@ -152,6 +157,10 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     }
     let mut files = Files::grouped_by(groups);
     files.velocity = names.velocity;
+    if let Some(name) = names.calibration {
+        reader.calibration(name);
+        files.site = reader.inputs.calibration.as_ref().and_then(Calibration::site);
+    }
     for request in requests(&scenario) {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {
@@ -175,10 +184,14 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
     let last = names.properties.last().map(|name| folder.shown(name).to_owned());
     let compiled =
         parsed.complete.then(|| examined(&parsed.input(), &parsed.inputs.diagnostics, parsed.in_files));
+    let formulas = written(&parsed.properties, &parsed.inputs.sources);
     let mut inputs = parsed.inputs;
     if let Some((study, found)) = compiled {
         inputs.diagnostics.extend(found);
         inputs.study = study;
+    }
+    if let (Some(calibration), Some(study)) = (&inputs.calibration, &inputs.study) {
+        inputs.diagnostics.extend(calibration.fits(study, &formulas).err());
     }
     if inputs.diagnostics.iter().any(is_error) {
         inputs.study = None;
@@ -229,6 +242,17 @@ impl Reader<'_> {
 
     fn next_id(&self) -> SourceId {
         SourceId(self.inputs.sources.len() as u16)
+    }
+
+    fn calibration(&mut self, name: &str) {
+        let read = self.folder.text(name).map_err(|reason| Diagnostic::placeless(Code::E0701, reason));
+        match read.and_then(|bytes| Ok((Fingerprint::of(&bytes), Calibration::read(name, &bytes)?))) {
+            Ok((print, found)) => {
+                self.inputs.prints.push((self.folder.shown(name).to_owned(), print));
+                self.inputs.calibration = Some(found);
+            }
+            Err(error) => self.report(error),
+        }
     }
 
     fn source(&mut self, name: &str) -> Option<Source> {

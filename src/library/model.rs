@@ -90,6 +90,7 @@ impl Draft {
                 settings: &settings,
                 velocity: None,
                 models: &[],
+                calibration: None,
             },
             &mut given,
         );

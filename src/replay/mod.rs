@@ -2,8 +2,9 @@
 //!
 //! A [`Replay`] is a model with a recording. At each of its instants the model is compiled with those who were there, as
 //! `smc check` compiles it with `from hotel at T`; then its formulas are asked of what happened next ([`monitor()`]), and of
-//! trials that begin there ([`evaluate()`]).
+//! trials that begin there ([`evaluate()`]). [`calibrate`] tells how often that was true.
 
+pub mod calibrate;
 mod cast;
 mod course;
 mod displacement;

@@ -27,6 +27,8 @@ const EXACTNESS: f64 = 1e-4;
 pub struct Fit {
     /// Whether it is in the region.
     pub inside: bool,
+    /// Square of its distance from the middle of the region, in units of the region: 1 at the rim.
+    pub score: f64,
     /// Logarithm of the density of the normal law there, 1/m^2.
     pub log_density: f64,
     /// Logarithm of the predictive density there, 1/m^2.
@@ -48,8 +50,10 @@ impl Fit {
         let square = (yy * off.x * off.x - 2.0 * xy * off.x * off.y + xx * off.y * off.y) / determinant;
         let outside = math::exp(-2.0 / (n - 2.0) * math::ln(1.0 - REGION)) - 1.0;
         let scale = (1.0 + 1.0 / n) * (n - 1.0) / (n - 2.0);
+        let rim = (1.0 + 1.0 / n) * (n - 1.0) * outside;
         Some(Self {
-            inside: square <= (1.0 + 1.0 / n) * (n - 1.0) * outside,
+            inside: square <= rim,
+            score: square / rim,
             log_density: -0.5 * square - 0.5 * math::ln(determinant) - math::ln(2.0 * PI),
             predictive: -0.5 * n * math::ln_1p(square / scale / (n - 2.0))
                 - math::ln(scale)

@@ -7,7 +7,7 @@ use super::source::source;
 use crate::advise::groups;
 use crate::base::geometry::Vec2;
 use crate::compile::study::Study;
-use crate::compile::{Files, Input, Seen, Setting, Sighting, examine};
+use crate::compile::{Files, Input, Seen, Setting, Sighting, Site, examine};
 use crate::data::tracks::{PersonState, Recording, Velocity};
 use crate::model::Agent;
 use crate::syntax::ast::{Item, ScenarioFile};
@@ -58,6 +58,20 @@ impl Replay {
         velocity: Velocity,
         whose: Whose,
     ) -> Result<Self, Vec<Diagnostic>> {
+        Self::at_site(input, tracks, velocity, whose, |_| Ok(None))
+    }
+
+    /// The same, with the laws of a site that the recording itself tells.
+    ///
+    /// # Errors
+    /// As `new`, and those of the laws.
+    pub fn at_site(
+        input: &Input<'_>,
+        tracks: &str,
+        velocity: Velocity,
+        whose: Whose,
+        site: impl FnOnce(&Self) -> Result<Option<Site>, Diagnostic>,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let file = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
         let recorded = file.format.read(file.bytes, &file.reading).map_err(|errors| {
             let first = errors.first().map_or(String::new(), ToString::to_string);
@@ -88,6 +102,9 @@ impl Replay {
             files: without_tracks(input, tracks),
             settings: input.settings.to_vec(),
         };
+        if let Some(site) = site(&replay).map_err(|error| vec![error])? {
+            replay.files.site = Some(site);
+        }
         replay.ask(input)?;
         Ok(replay)
     }
@@ -115,6 +132,11 @@ impl Replay {
             Whose::Person(id) => Some(id),
             Whose::Everybody => None,
         }
+    }
+
+    /// All instants of everybody, every so many seconds.
+    pub(super) fn everybody(&self, every: f64) -> Vec<Instant> {
+        instants(&self.recording, every, None, (f64::NEG_INFINITY, f64::INFINITY))
     }
 
     /// All instants between two times, s, every so many seconds.

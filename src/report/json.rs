@@ -135,6 +135,9 @@ pub(super) fn result(result: &QueryResult) -> Value {
     if let Some(found) = &result.every {
         put("every", every(found));
     }
+    if let Some(error) = &result.model {
+        put("model", json!(error));
+    }
     if let Some(found) = &result.distribution {
         put("distribution", distribution(found));
     }
@@ -145,7 +148,7 @@ pub(super) fn result(result: &QueryResult) -> Value {
         put("evidence", evidence(found));
     }
     put("warnings", json!(result.warnings));
-    put("witnesses", result.witnesses.iter().map(|one| witness(one, result.against)).collect());
+    put("witnesses", result.witnesses.iter().map(|one| witness(one, result.asked.against)).collect());
     put("replay", json!(result.replay));
     put("elapsed_s", json!(result.elapsed_s));
     Value::Object(object)

@@ -8,6 +8,7 @@ pub mod advice;
 pub mod advised;
 pub mod behaviours;
 pub mod brief;
+pub mod calibration;
 pub mod csv;
 mod escape;
 pub mod evaluate;

@@ -2,6 +2,7 @@
 
 mod advise;
 mod budgets;
+mod calibrate;
 mod calls;
 mod errors;
 mod escapes;

@@ -72,6 +72,7 @@ fn in_scene(
         set: Vec::new(),
         data: arguments.data.clone(),
         models: Vec::new(),
+        calibration: None,
         velocity: None,
     };
     let (study, inputs::Loaded { inputs, paths }) =

@@ -58,6 +58,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         set: arguments.set.clone(),
         data: arguments.data.clone(),
         models: Vec::new(),
+        calibration: None,
         velocity: None,
     };
     let nothing = Vec::new;

@@ -1,6 +1,6 @@
 //! The options of `smc monitor`, `smc evaluate` and `smc fit`.
 
-use crate::cli::values::{Cores, Model, parse_count, parse_duration, parse_moment, parse_share};
+use crate::cli::values::{Cores, Model, TextFormat, parse_count, parse_duration, parse_moment, parse_share};
 use crate::replay::{Beyond, Whose};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -98,6 +98,40 @@ pub(in crate::cli) struct EvaluateCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = EvaluateFormat::Text)]
     pub(super) format: EvaluateFormat,
+}
+
+/// `smc calibrate`
+#[derive(Args, Debug)]
+pub(in crate::cli) struct CalibrateCommand {
+    /// The model; its people are in the tracks.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Property files (`.bltl`); their named formulas are calibrated, their queries are not asked.
+    #[arg(required = true)]
+    pub(super) properties: Vec<String>,
+    /// Tracks of the model.
+    #[arg(long, value_name = "TRACKS")]
+    pub(super) tracks: String,
+    /// Name of the site; that of the tracks by default.
+    #[arg(long, value_name = "NAME")]
+    pub(super) site: Option<String>,
+    /// When people were recorded there, as verdicts say it.
+    #[arg(long, value_name = "DATE")]
+    pub(super) date: Option<String>,
+    /// How many persons calibrate at most, the first by time; later ones test. At most two thirds do.
+    #[arg(long, value_name = "N", default_value = "80", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) persons: u32,
+    #[command(flatten)]
+    pub(super) span: Span,
+    /// Trials of each person.
+    #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count)]
+    pub(super) trials: u64,
+    /// Whoever was recorded slower than this, in m/s, is left out.
+    #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
+    pub(super) speed: f64,
+    /// Format of what is printed; `-o` writes the calibration in any case.
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
 }
 
 /// `smc fit`

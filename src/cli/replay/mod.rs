@@ -1,11 +1,13 @@
-//! `smc monitor`, `smc evaluate` and `smc fit`: models beside recordings.
+//! `smc monitor`, `smc evaluate`, `smc calibrate` and `smc fit`: models beside recordings.
 
 mod arguments;
+mod calibrate;
 mod evaluate;
 mod fit;
 mod monitor;
 
-pub(super) use arguments::{EvaluateCommand, FitCommand, MonitorCommand};
+pub(super) use arguments::{CalibrateCommand, EvaluateCommand, FitCommand, MonitorCommand};
+pub(super) use calibrate::run as calibrate;
 pub(super) use evaluate::run as evaluate;
 pub(super) use fit::run as fit;
 pub(super) use monitor::run as monitor;
@@ -16,9 +18,11 @@ use super::output;
 use super::terminal::Colors;
 use super::values::threads;
 use crate::base::visible::visible;
+use crate::compile::Site;
 use crate::data::tracks::Velocity;
 use crate::engine::Threads;
 use crate::library::Parsed;
+use crate::replay::calibrate::Calibrating;
 use crate::replay::{Instant, Replay, Whose};
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
@@ -35,6 +39,25 @@ struct Call {
     every: f64,
 }
 
+/// As `run`, for a call that finds the laws of its site in the recording.
+fn run_at_site(
+    replayed: &Replayed,
+    (usual, whose): (Velocity, Whose),
+    colors: Colors,
+    of: impl FnOnce(&Parsed) -> Calibrating,
+    work: impl FnOnce(&Call, &Calibrating) -> Result<String, Vec<Diagnostic>>,
+) -> Exit {
+    let Some((parsed, paths)) = inputs::parse_or_tell(&replayed.model, &replayed.properties, colors) else {
+        return Exit::Wrong;
+    };
+    let calibrating = of(&parsed);
+    let mut sources = parsed.inputs.sources.clone();
+    let site = |replay: &Replay| calibrating.site_of(replay);
+    let work = |call: &Call| work(call, &calibrating);
+    let done = replay(&parsed, &paths, replayed, (usual, whose), &mut sources, (site, work));
+    complaint::end(done.map(|()| Exit::Success), &sources, colors)
+}
+
 /// Reads what a call names and does the work.
 fn run(
     replayed: &Replayed,
@@ -46,7 +69,8 @@ fn run(
         return Exit::Wrong;
     };
     let mut sources = parsed.inputs.sources.clone();
-    let done = replay(&parsed, &paths, replayed, (usual, whose), &mut sources, work);
+    let nothing = |_: &Replay| Ok(None);
+    let done = replay(&parsed, &paths, replayed, (usual, whose), &mut sources, (nothing, work));
     complaint::end(done.map(|()| Exit::Success), &sources, colors)
 }
 
@@ -57,12 +81,15 @@ fn replay(
     replayed: &Replayed,
     (usual, whose): (Velocity, Whose),
     sources: &mut Vec<Source>,
-    work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
+    (site, work): (
+        impl FnOnce(&Replay) -> Result<Option<Site>, Diagnostic>,
+        impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
+    ),
 ) -> Result<(), Vec<Diagnostic>> {
     output::guard(replayed.span.output.as_deref(), paths)?;
     let threads = threads(replayed.span.cores.threads)?;
     let velocity = replayed.model.velocity.unwrap_or(usual);
-    let replay = Replay::new(&parsed.input(), &replayed.tracks, velocity, whose)?;
+    let replay = Replay::at_site(&parsed.input(), &replayed.tracks, velocity, whose, site)?;
     let every = replayed.every.map_or(replay.recording.step(), |every| every.as_secs_f64());
     let instants = replay.instants(every, replayed.span.between());
     if instants.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::base::geometry::Vec2;
 use crate::data::tracks::{PersonState, Recording};
-use crate::model::AgentId;
+use crate::model::{AgentId, Law};
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -58,6 +58,15 @@ impl Seen {
     }
 }
 
+/// How the heading and the speed of people of a site change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Site {
+    /// Angle from the present heading, rad.
+    pub turn: Law,
+    /// Speed as a share of the present one.
+    pub pace: Law,
+}
+
 /// Finds the groups of people who are seen at an instant; each of ascending ids, in the order of the first.
 pub type Grouping = fn(&[Sighting]) -> Vec<Vec<u32>>;
 
@@ -72,6 +81,8 @@ pub(crate) struct Recordings {
     pub(crate) velocities: Vec<(String, &'static str)>,
     /// Finds groups of people who are seen.
     pub(crate) grouping: Option<Grouping>,
+    /// The laws of the site, where they are known.
+    pub(crate) site: Option<Site>,
     /// Agents who are named and not seen, with their stable numbers: they never come.
     pub(crate) unseen: Vec<(AgentId, u32)>,
     /// The recorded persons in use, with the places of their declarations.

@@ -15,6 +15,8 @@ pub(crate) const STANDS: f64 = 0.05;
 pub(crate) const RECORDED: &str = "recorded";
 /// What stands for the speed that somebody recorded would have alone.
 pub(crate) const WANTED: &str = "wanted";
+/// What stands for the law of a calibration.
+pub(crate) const SITE: &str = "site";
 /// The function of destinations.
 const DESTINATIONS: &str = "destinations";
 /// A destination as near as this has no direction, m.
@@ -90,6 +92,11 @@ pub(crate) fn is_recorded(expr: &Expr) -> bool {
     matches!(&expr.kind, ExprKind::Name(name) if name == RECORDED)
 }
 
+/// Whether an expression is just the law of the site.
+pub(crate) fn is_of_site(expr: &Expr) -> bool {
+    matches!(&expr.kind, ExprKind::Name(name) if name == SITE)
+}
+
 /// Whether an expression is just the recorded speed, or what that tells of the wanted one.
 pub(crate) fn is_speed(expr: &Expr) -> bool {
     is_recorded(expr) || matches!(&expr.kind, ExprKind::Name(name) if name == WANTED)
@@ -109,7 +116,7 @@ fn speaks_of_recorded(expr: &Expr) -> bool {
         ExprKind::Binary(_, left, right) => speaks_of_recorded(left) || speaks_of_recorded(right),
         ExprKind::Unary(_, inner) => speaks_of_recorded(inner),
         ExprKind::Call { arguments, .. } => arguments.iter().any(speaks_of_recorded),
-        _ => is_speed(expr),
+        _ => is_speed(expr) || is_of_site(expr),
     }
 }
 

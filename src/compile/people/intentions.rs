@@ -3,14 +3,15 @@
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     number::Number,
-    sighting::Sighting,
+    sighting::{Sighting, Site},
     symbols::{Meaning, unknown},
     typed::Typed,
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::laws::{self, distribution};
 use crate::compile::people::intended::{
-    Goals, Intended, RECORDED, STANDS, WANTED, destinations, is_recorded, is_speed, wanted, weights,
+    Goals, Intended, RECORDED, STANDS, WANTED, destinations, is_of_site, is_recorded, is_speed, wanted,
+    weights,
 };
 use crate::model::{Body, Goal, Law, Leg, Parameter, Route, Start};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Field, Value};
@@ -49,6 +50,7 @@ fn turn(context: &mut Context<'_>, value: &Value) -> Lowered<Law> {
     let hint = "write for example `heading = recorded + normal(0 deg, 12 deg)`";
     let law = match value {
         Value::Plain(expr) if is_recorded(expr) => return Ok(Law::Constant(0.0)),
+        Value::Plain(expr) if is_of_site(expr) => return Ok(site(context, expr)?.turn),
         Value::Plain(Expr { kind: ExprKind::Binary(BinaryOp::Plus, left, right), .. }) => {
             match (is_recorded(left), is_recorded(right)) {
                 (true, false) => Some(right),
@@ -65,6 +67,15 @@ fn turn(context: &mut Context<'_>, value: &Value) -> Lowered<Law> {
                 "`heading` must be `recorded`, or `recorded` plus an angle or a distribution of angles";
             context.report(error!(E0305, value.span(), "{said}"; hint: "{hint}"))
         }
+    }
+}
+
+/// The laws of the site.
+fn site(context: &mut Context<'_>, expr: &Expr) -> Lowered<Site> {
+    match context.tracks.site.clone() {
+        Some(site) => Ok(site),
+        None => context.report(error!(E0728, expr.span, "no calibration tells the laws of the site";
+                hint: "make one with `smc calibrate`, and add `--calibration site.calibration`")),
     }
 }
 
@@ -153,6 +164,10 @@ fn recorded_speed(context: &mut Context<'_>, value: &Value, (speed, alone): (f64
     let (Value::Plain(expr) | Value::Truncated { law: expr, .. }) = value else {
         return laws::parameter_law(context, Parameter::Speed, value, &Locals::default());
     };
+    if is_of_site(expr) {
+        let pace = site(context, expr)?.pace;
+        return Ok(pace.scaled(speed).unwrap_or(Law::Constant(speed)));
+    }
     let is_law = is_speed(expr)
         || matches!(&expr.kind, ExprKind::Binary(BinaryOp::Times, left, right)
                 if is_speed(left) != is_speed(right));

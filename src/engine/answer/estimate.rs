@@ -124,7 +124,7 @@ impl Answers<'_> {
         }
         if let Ask::Check { at_least, threshold, .. } = &query.ask {
             result.of = query.said.event.as_ref().map(|event| format!("P({event})"));
-            result.against = result.of.is_some() && !*at_least;
+            result.asked.against = result.of.is_some() && !*at_least;
             let decision = entry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,

@@ -109,8 +109,6 @@ pub struct QueryResult {
     /// Of which probability the figures are, where the query names something else: the check of a quantile is decided
     /// as one of `P(metric <= threshold)`.
     pub of: Option<String>,
-    /// Whether the claim is that this probability is small, so that a trial with the event speaks against it.
-    pub against: bool,
     /// Unit of the three numbers before; empty for probabilities.
     pub unit: String,
     /// Kind and level of the interval: `time-uniform, 95 %`.
@@ -143,6 +141,31 @@ pub struct QueryResult {
     pub rare: Option<Rare>,
     /// How the evidence grew, where that was asked for.
     pub evidence: Option<Evidence>,
+    /// How often what the model says was true of people who were recorded; `None` where that is not known.
+    pub model: Option<ModelError>,
+}
+
+/// How often a property was true of recorded people of whom the model said nearly the same probability.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ModelError {
+    /// Where they were recorded.
+    pub site: String,
+    /// When, if that is known.
+    pub date: Option<String>,
+    /// Least probability of these persons.
+    pub from: f64,
+    /// Largest probability.
+    pub to: f64,
+    /// How many persons were asked about.
+    pub asked: u64,
+    /// Of how many the model said such a probability.
+    pub persons: u64,
+    /// Of how many of these it was true.
+    pub held: u64,
+    /// Lower bound of the probability that it is true, 97.5 %.
+    pub low: f64,
+    /// Upper bound, 97.5 %.
+    pub high: f64,
 }
 
 impl QueryResult {
@@ -211,6 +234,8 @@ pub struct AskedQuery {
     pub horizon: Option<String>,
     /// What was drawn once for the run, so that the result is about it alone: `the roadmap of planner, seed 0`.
     pub given: Option<String>,
+    /// Whether the claim is that the probability which the figures are of is small, so that a trial with the event speaks against it.
+    pub against: bool,
 }
 
 impl AskedQuery {

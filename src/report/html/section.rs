@@ -5,6 +5,7 @@ use super::chart::Mark;
 use crate::engine::outcome::{
     Histogram, Interval, QueryResult, RankedOption, Shortfall, Side, Verdict, Witness,
 };
+use crate::report::calibration::sentence;
 use crate::report::number::{count, counted, plain};
 use crate::report::palette::Paint;
 use crate::report::phrase::{certified, endless, one_line, settings};
@@ -51,6 +52,8 @@ pub(super) struct Facts {
     /// The figures under each value of `under every`.
     pub(super) every: Vec<String>,
     pub(super) certified: String,
+    /// How often such verdicts were true.
+    pub(super) model: Option<String>,
     pub(super) given: Option<String>,
     pub(super) trials: String,
     /// The histogram as SVG; may be empty.
@@ -170,6 +173,7 @@ fn facts(
         figures,
         every: text::under_each(result),
         certified: certified(result),
+        model: result.model.as_ref().map(sentence),
         given: result.asked.given.clone(),
         trials: text::trials(result),
         histogram: histogram.unwrap_or_default(),

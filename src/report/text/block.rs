@@ -9,6 +9,7 @@ use crate::engine::outcome::{
     Comparison, Distribution, Histogram, Interval, Kind, QueryResult, Ranking, Rare, Shortfall, Shows, Side,
     Stop, Verdict, Witness,
 };
+use crate::report::calibration::sentence;
 use crate::report::number::{brief, clock, count, counted, duration, interval, plain, readable, some};
 use crate::report::palette::{Paint, Palette};
 use crate::report::phrase::{certified, endless, one_line, settings};
@@ -32,6 +33,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     let statement = certified(result);
     if !statement.is_empty() {
         line(text, &format!("certified: {statement}"));
+    }
+    if let Some(error) = &result.model {
+        line(text, &format!("model: {}", sentence(error)));
     }
     if let Some(given) = &result.asked.given {
         line(text, &format!("given: {given}"));

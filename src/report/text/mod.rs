@@ -8,6 +8,7 @@ mod rows;
 use super::number::{count, counted, duration, rate, some};
 use super::palette::{Paint, Palette};
 use crate::engine::outcome::{CallResult, QueryResult, Shortfall, Verdict};
+use crate::report::calibration::sentence;
 use crate::report::phrase::{certified, settings};
 pub(super) use block::{counts, moment, shown, trials, word};
 use columns::Cell;
@@ -34,6 +35,10 @@ pub fn render(run: &CallResult, palette: Palette) -> String {
             many => write_sweep(&mut text, many, palette),
         }
         text.push('\n');
+    }
+    if run.results.iter().all(|result| result.model.is_none()) && !run.people.is_empty() {
+        let _ =
+            writeln!(text, "model error: not known; `smc calibrate` measures it where people were recorded");
     }
     for warning in &run.warnings {
         let _ = writeln!(text, "{}{warning}", palette.paint(Paint::Caution, "warning: "));
@@ -143,6 +148,9 @@ fn write_sweep(text: &mut String, results: &[&QueryResult], palette: Palette) {
         }
     }
     for result in results {
+        if let Some(error) = &result.model {
+            rows::line(text, &format!("model for {}: {}", settings(result), sentence(error)));
+        }
         block::remarks(text, result, &format!("{}: ", settings(result)), palette);
         for witness in &result.witnesses {
             block::witness(text, witness, result.of.is_some(), palette);
