@@ -11,6 +11,9 @@ const LINES: usize = 12;
 /// The body keeps this distance in addition to its radius, m. The path may be that far from its lines.
 const MARGIN: f64 = 1e-3;
 
+/// Somebody nearer to a barrier than that comes no nearer than this, m: more than rounding, and a turn on the spot.
+const NEARER: f64 = 2e-8;
+
 /// The free space of a scene for bodies of one radius, with its grid.
 #[derive(Clone, Debug)]
 pub struct Ground {
@@ -73,7 +76,7 @@ impl Ground {
         is_far
             || !self.free.sight().any_along(line, keep, |piece| {
                 let distance = piece.distance_to(line);
-                distance < keep && distance < piece.distance(first) - 1e-12
+                distance < keep && distance < piece.distance(first) - NEARER
             })
     }
 

@@ -25,8 +25,8 @@ const NOISE: f64 = 5.0 * PI / 180.0;
 const BACK: f64 = 100.0 * PI / 180.0;
 const ASIDE: f64 = 40.0 * PI / 180.0;
 
-/// Radii of the arc of a turn on the spot that are tried, m.
-const ARCS: [f64; 2] = [0.03, 1e-3];
+/// Radii of the arc of a turn on the spot that are tried, m; the last one for who touches a barrier nearly.
+const ARCS: [f64; 3] = [0.03, 1e-3, 1e-8];
 
 /// The search where all candidates meet barriers.
 const FALLBACK: HybridAStar =
