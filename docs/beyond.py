@@ -145,7 +145,7 @@ agent b: walker {{ at = uniform in start; velocity = (-1.34, 0) m/s; route = (-2
 
 
 def companions(preset, count):
-    """Of two: distance and share abreast. Of three: how far the middle one is behind the others."""
+    """The distance of two and the share of the time abreast; of three, how far the middle one is behind the others."""
     text = f"""horizon = 14 s
 step = 0.02 s
 scene {{

@@ -82,7 +82,7 @@ fn a_berth_is_taken_off_the_gap() {
     }
 }
 
-/// Who follows keeps pace with a share of the speed of who walks away, and of nobody who comes back.
+/// A follower keeps pace with a share of the speed of a person who walks away, and not of one who comes back.
 #[test]
 fn who_follows_keeps_pace_with_who_walks_away() {
     let behind = Person { headway: 0.8, follow: 0.5, a: 0.0, ..looking(p(0.0, 0.0), p(1.0, 0.0), 1.3) };

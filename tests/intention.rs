@@ -74,7 +74,7 @@ fn wanted_is_what_the_recorded_speed_and_the_density_around_tell() {
         let model = model.unwrap_or_else(|errors| panic!("{errors}"));
         model.trial(1, 0).unwrap().last().unwrap().agents[5].velocity.x
     };
-    // Of the one in the middle the fifth nearest is three places off.
+    // The fifth nearest of the one in the middle is three places off.
     let density = |spacing: f64| 5.0 / (std::f64::consts::PI * 9.0 * spacing * spacing);
     let left = |density: f64| 1.0 - (-1.913 * (1.0 / density - 1.0 / 5.4)).exp();
     let wanted = |spacing: f64| 0.3 + (1.0 - left(density(spacing))) * 1.1;

@@ -71,7 +71,7 @@ impl Parameters {
             }
             values[Parameter::Radius as usize] = particle.radius(values[Parameter::Radius as usize]);
             values[Parameter::Tau as usize] *= particle.tau_factor;
-            // Groups pass through each other, so as bodies they have no manners. What a follower leaves of the headway stays.
+            // Groups pass through each other, so as bodies they have no manners. The part of the headway that a follower leaves stays.
             values[Parameter::Headway as usize] *= 1.0 - values[Parameter::Follow as usize];
             for manner in Parameter::MANNERS {
                 values[manner as usize] = 0.0;

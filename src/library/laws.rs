@@ -1,7 +1,7 @@
 //! People who were recorded and go on exactly as they were seen: after a second nobody does.
 //!
-//! Of the recorded persons of hotel, eth, zara and students, 0 to 7 % are in the region that holds 90 % of such trials after 1
-//! to 4.8 s; with laws of heading and speed it is 81 to 92 % (`docs/replay.md`).
+//! After 1 to 4.8 s, 0 to 7 % of the recorded persons of hotel, eth, zara and students are in the region that holds 90 % of such
+//! trials; with laws of heading and speed it is 81 to 92 % (`docs/replay.md`).
 
 use crate::base::tick::Tick;
 use crate::compile::Study;

@@ -51,7 +51,7 @@ fn a_calibration_counts_what_was_true_with_the_same_bytes_at_any_number_of_threa
     let faults: Vec<String> = validator.iter_errors(&found).map(|error| error.to_string()).collect();
     assert!(faults.is_empty(), "{faults:?}");
     assert_eq!((found["persons"].as_u64(), found["later"].as_u64()), (Some(30), Some(15)));
-    // Who turns to the left by enough comes 1 m north: that is a third of them, whatever instant was drawn.
+    // A third of them turns to the left by enough to come 1 m north, whatever instant was drawn.
     let bin = &found["properties"][0]["bins"][1];
     assert_eq!(bin["persons"], 30, "all have the laws of the site, so nearly the same probability: {bin}");
     let share = bin["held"].as_f64().unwrap() / 30.0;

@@ -13,9 +13,9 @@ use crate::syntax::source::Span;
 pub(crate) const STANDS: f64 = 0.05;
 /// What stands for the recorded heading or speed.
 pub(crate) const RECORDED: &str = "recorded";
-/// What stands for the speed that somebody recorded would have alone.
+/// The name of the speed that somebody recorded would have alone.
 pub(crate) const WANTED: &str = "wanted";
-/// What stands for the law of a calibration.
+/// The name of the law of a calibration.
 pub(crate) const SITE: &str = "site";
 /// The function of destinations.
 const DESTINATIONS: &str = "destinations";

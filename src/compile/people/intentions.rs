@@ -128,7 +128,7 @@ fn goals_of(context: &mut Context<'_>, field: &Field) -> Lowered<Goals> {
     }
 }
 
-/// Gives somebody of a kind who was seen the intention that the fields say. Who stands has none.
+/// Gives somebody of a kind who was seen the intention that the fields say. A person who stands has none.
 pub(crate) fn intend(
     context: &mut Context<'_>,
     intended: &Intended<'_>,

@@ -148,7 +148,7 @@ pub struct QueryResult {
 /// How often a property was true of recorded people of whom the model said nearly the same probability.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ModelError {
-    /// Where they were recorded.
+    /// The place where they were recorded.
     pub site: String,
     /// When, if that is known.
     pub date: Option<String>,
@@ -158,9 +158,9 @@ pub struct ModelError {
     pub to: f64,
     /// How many persons were asked about.
     pub asked: u64,
-    /// Of how many the model said such a probability.
+    /// The number of those of whom the model said such a probability.
     pub persons: u64,
-    /// Of how many of these it was true.
+    /// The number of these of whom it was true.
     pub held: u64,
     /// Lower bound of the probability that it is true, 97.5 %.
     pub low: f64,

@@ -53,7 +53,7 @@ const ERROR: f64 = 0.05;
 /// Later persons whose regions hold less than this have changed.
 pub const DRIFTED: f64 = 0.85;
 
-/// What was measured at a site.
+/// The measurement of a site.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Version of the form of the file.
@@ -114,7 +114,7 @@ pub struct Bin {
     pub to: f64,
     /// First persons in the bin.
     pub persons: u64,
-    /// Of whom the property was true.
+    /// The number of them of whom the property was true.
     pub held: u64,
     /// Mean of their simulated probabilities.
     pub mean: f64,
@@ -124,7 +124,7 @@ pub struct Bin {
     pub high: f64,
     /// Later persons in the bin.
     pub later: u64,
-    /// Of whom the property was true.
+    /// The number of them of whom the property was true.
     pub later_held: u64,
     /// Mean of their simulated probabilities.
     pub later_mean: f64,
@@ -145,7 +145,7 @@ pub struct CalibratedRegion {
     pub after: f64,
 }
 
-/// What a calibration is about.
+/// The options of a calibration.
 #[derive(Clone, Debug, Default)]
 pub struct Calibrating {
     /// Name of the site.
@@ -349,7 +349,7 @@ mod tests {
         Predicted { predictions: vec![(0..100).map(one).collect()], ..Predicted::default() }
     }
 
-    /// Of 20 persons the 19th score is that below which a further one lies with probability 19/21 at least.
+    /// The 19th score of 20 persons is that below which a further one lies with probability 19/21 at least.
     #[test]
     fn the_factor_is_the_score_in_the_conformal_place() {
         let fit = |score: f64| Fit { inside: score <= 1.0, score, log_density: 0.0, predictive: 0.0 };

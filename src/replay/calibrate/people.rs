@@ -1,4 +1,4 @@
-//! Who calibrates: each person of a recording at one instant, of companions one alone, by time.
+//! The persons who calibrate: each person of a recording at one instant, of companions one alone, by time.
 
 use crate::advise::groups;
 use crate::base::random::{Purpose, Stream, TrialKey};
