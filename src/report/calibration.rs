@@ -3,8 +3,9 @@
 use super::number::plain;
 use super::palette::Palette;
 use super::text::columns::{Cell, lines};
-use crate::engine::outcome::ModelError;
-use crate::replay::calibrate::{Bin, Calibration, DRIFTED};
+use crate::engine::outcome::{CallResult, ModelError};
+use crate::replay::calibrate::{Bin, CalibratedProperty, CalibratedRegion, Calibration, DRIFTED};
+use crate::report::html::{Page, Table};
 use crate::stats::{Counts, clopper_pearson};
 use std::fmt::Write as _;
 
@@ -49,46 +50,11 @@ pub fn text(found: &Calibration) -> String {
     );
     for property in &found.properties {
         let _ = writeln!(out, "{}", property.name);
-        let head: Vec<Cell> = ["  the model says", "persons", "true", "bounds, 95 %", "later", "true"]
-            .map(Cell::left)
-            .into_iter()
-            .collect();
-        let row = |bin: &Bin| {
-            let share = |held: u64, all: u64| {
-                if all == 0 { "-".to_owned() } else { format!("{:.2}", held as f64 / all as f64) }
-            };
-            vec![
-                Cell::left(format!("  P {}", span(bin.from, bin.to))),
-                Cell::right(bin.persons.to_string()),
-                Cell::right(share(bin.held, bin.persons)),
-                Cell::left(format!("[{:.2}, {:.2}]", down(bin.low), up(bin.high))),
-                Cell::right(bin.later.to_string()),
-                Cell::right(share(bin.later_held, bin.later)),
-            ]
-        };
-        let rows: Vec<Vec<Cell>> = std::iter::once(head).chain(property.bins.iter().map(row)).collect();
-        for line in lines(&rows, Palette::PLAIN) {
-            let _ = writeln!(out, "{}", line.trim_end());
-        }
+        write_table(&mut out, &BINS, property.bins.iter().map(bin));
         out.push('\n');
     }
-    let _ = writeln!(out, "recorded positions in the 90 % region of the predicted ones");
-    let head: Vec<Cell> = ["  after s", "first", "later", "factor of the radius", "later, with it"]
-        .map(Cell::left)
-        .into_iter()
-        .collect();
-    let rows = found.regions.iter().map(|region| {
-        vec![
-            Cell::right(format!("  {}", plain(region.seconds))),
-            Cell::right(format!("{:.2}", region.first)),
-            Cell::right(format!("{:.2}", region.before)),
-            Cell::right(format!("{:.2}", region.factor)),
-            Cell::right(format!("{:.2}", region.after)),
-        ]
-    });
-    for line in lines(&std::iter::once(head).chain(rows).collect::<Vec<_>>(), Palette::PLAIN) {
-        let _ = writeln!(out, "{}", line.trim_end());
-    }
+    let _ = writeln!(out, "{REGIONS}");
+    write_table(&mut out, &TIMES, found.regions.iter().map(region));
     out.push('\n');
     for drift in drifts(found) {
         let _ = writeln!(out, "drift: {drift}");
@@ -98,6 +64,73 @@ pub fn text(found: &Calibration) -> String {
         "It is assumed that people of this site stay as they were, and walk as they would without a device."
     );
     out
+}
+
+/// What the tables of regions are about.
+const REGIONS: &str = "recorded positions in the 90 % region of the predicted ones";
+/// Heads of the tables.
+const BINS: [&str; 6] = ["the model says", "persons", "true", "bounds, 95 %", "later", "true"];
+const TIMES: [&str; 5] = ["after s", "first", "later", "factor of the radius", "later, with it"];
+
+fn bin(bin: &Bin) -> Vec<String> {
+    let share = |held: u64, all: u64| {
+        if all == 0 { "-".to_owned() } else { format!("{:.2}", held as f64 / all as f64) }
+    };
+    vec![
+        format!("P {}", span(bin.from, bin.to)),
+        bin.persons.to_string(),
+        share(bin.held, bin.persons),
+        format!("[{:.2}, {:.2}]", down(bin.low), up(bin.high)),
+        bin.later.to_string(),
+        share(bin.later_held, bin.later),
+    ]
+}
+
+fn region(region: &CalibratedRegion) -> Vec<String> {
+    let shares = [region.first, region.before, region.factor, region.after];
+    std::iter::once(plain(region.seconds)).chain(shares.map(|share| format!("{share:.2}"))).collect()
+}
+
+/// A table of which the first column stands on the left, the others on the right.
+fn write_table(out: &mut String, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
+    let cells = |row: Vec<String>| {
+        let cell = |(k, text): (usize, String)| {
+            if k == 0 { Cell::left(format!("  {text}")) } else { Cell::right(text) }
+        };
+        row.into_iter().enumerate().map(cell).collect::<Vec<Cell>>()
+    };
+    let head = head.iter().map(|text| (*text).to_owned()).collect();
+    let rows: Vec<Vec<Cell>> = std::iter::once(head).chain(rows).map(cells).collect();
+    for line in lines(&rows, Palette::PLAIN) {
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+}
+
+/// A calibration as a page: a table for each property, one for the regions, and the drift.
+pub fn page(found: &Calibration) -> Page<'static> {
+    let of = |property: &CalibratedProperty| Table {
+        title: property.name.clone(),
+        note: "The share of persons of whom it was true, by the probability that the model said of them."
+            .to_owned(),
+        columns: BINS.to_vec(),
+        rows: property.bins.iter().map(bin).collect(),
+    };
+    let regions = Table {
+        title: "90 % regions".to_owned(),
+        note: format!("Shares of {REGIONS}. Drift: {}.", drifts(found).join("; ")),
+        columns: TIMES.to_vec(),
+        rows: found.regions.iter().map(region).collect(),
+    };
+    let when = found.date.as_ref().map_or(String::new(), |date| format!(" on {date}"));
+    let title = format!(
+        "{} persons recorded at {}{when} calibrate {}, {} later ones test",
+        found.persons, found.site, found.kind, found.later
+    );
+    Page {
+        run: CallResult::of(title, found.seed),
+        tables: found.properties.iter().map(of).chain([regions]).collect(),
+        ..Page::default()
+    }
 }
 
 /// In what later persons differ from the first ones.

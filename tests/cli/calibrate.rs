@@ -63,6 +63,9 @@ fn a_calibration_counts_what_was_true_with_the_same_bytes_at_any_number_of_threa
         assert!(region["after"].as_f64().unwrap() > 0.7, "{region}");
     }
     assert!(said.out.contains("30 persons calibrate, 15 later ones test"), "{}", said.out);
+    let page = place.call(&[&CALL[..], &["2026-05-04", "--report", "a.html"]].concat());
+    let html = std::fs::read_to_string(place.path("a.html")).unwrap();
+    assert!(html.contains("90 % regions") && html.contains("factor of the radius"), "{}", page.err);
     let plot = place.call(&["plot", "a.calibration", "--figure", "calibration", "--only", "north"]);
     assert!(plot.code == Some(0) && plot.out.contains("later persons"), "{}", plot.err);
 }
@@ -124,6 +127,13 @@ fn what_does_not_fit_is_refused() {
     refused(&["check", "a.scn", "a.bltl", "-q"], "E0728", "--calibration");
     refused(&["check", "a.scn", "a.bltl", "-q", "--calibration", "a.scn"], "E0726", "no calibration");
     refused(&["check", "a.scn", "a.bltl", "-q", "--calibration", "none"], "E0701", "does not exist");
+    let onto = place.call(&["calibrate", "a.scn", "a.bltl", "--tracks", "here", "-o", "a.bltl"]);
+    assert!(onto.code == Some(2) && onto.err.contains("a.bltl"), "{}", onto.err);
+    assert_eq!(
+        std::fs::read_to_string(place.path("a.bltl")).unwrap(),
+        ASKED,
+        "an input is never overwritten"
+    );
     let few = Place::new(&[("a.scn", MODEL), ("a.bltl", ASKED), ("t.csv", &street(24))]);
     let said = few.call(&[&CALL[..], &["2026-05-04"]].concat());
     assert!(said.code == Some(2) && said.err.contains("24 persons"), "{}", said.err);

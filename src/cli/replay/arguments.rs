@@ -129,6 +129,9 @@ pub(in crate::cli) struct CalibrateCommand {
     /// Whoever was recorded slower than this, in m/s, is left out.
     #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
     pub(super) speed: f64,
+    /// Also write a page with the tables.
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) report: Option<PathBuf>,
     /// Format of what is printed; `-o` writes the calibration in any case.
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     pub(super) format: TextFormat,

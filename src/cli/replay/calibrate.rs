@@ -11,7 +11,8 @@ use crate::library::Parsed;
 use crate::model::Scenario;
 use crate::replay::Whose;
 use crate::replay::calibrate::{Calibrating, written};
-use crate::report::calibration::text;
+use crate::report::calibration::{page, text};
+use crate::report::html;
 use crate::route::Ways;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -39,7 +40,8 @@ pub(in crate::cli) fn run(arguments: &CalibrateCommand, colors: Colors) -> Exit 
         ..calibrating.clone()
     };
     let work = |call: &Call, calibrating: &Calibrating| measured(arguments, call, calibrating);
-    super::run_at_site(&replayed, (Velocity::Seen, Whose::Everybody), colors, of, work)
+    let outputs = [arguments.span.output.as_deref(), arguments.report.as_deref()];
+    super::run_at_site(&replayed, (Velocity::Seen, Whose::Everybody), (outputs, colors), of, work)
 }
 
 fn measured(
@@ -52,6 +54,9 @@ fn measured(
     let found = calibrating.measure(&call.replay, (&call.threads, &drivers))?;
     if let Some(path) = &arguments.span.output {
         output::save(path, found.to_json().as_bytes())?;
+    }
+    if let Some(path) = &arguments.report {
+        output::save(path, html::page(page(&found)).as_bytes())?;
     }
     Ok(match arguments.format {
         TextFormat::Text => text(&found),

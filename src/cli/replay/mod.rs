@@ -28,7 +28,7 @@ use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Source;
 use arguments::Replayed;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a call is about.
 struct Call {
@@ -43,13 +43,16 @@ struct Call {
 fn run_at_site(
     replayed: &Replayed,
     (usual, whose): (Velocity, Whose),
-    colors: Colors,
+    (outputs, colors): ([Option<&Path>; 2], Colors),
     of: impl FnOnce(&Parsed) -> Calibrating,
     work: impl FnOnce(&Call, &Calibrating) -> Result<String, Vec<Diagnostic>>,
 ) -> Exit {
     let Some((parsed, paths)) = inputs::parse_or_tell(&replayed.model, &replayed.properties, colors) else {
         return Exit::Wrong;
     };
+    if let Err(error) = output::guard_all(&outputs, &paths) {
+        return complaint::end(Err(vec![error]), &parsed.inputs.sources, colors);
+    }
     let calibrating = of(&parsed);
     let mut sources = parsed.inputs.sources.clone();
     let site = |replay: &Replay| calibrating.site_of(replay);
