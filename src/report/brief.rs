@@ -1,8 +1,7 @@
 //! One line a query: the verdict, the query, its setting, the figures, the number of trials.
 
-use super::calibration::sentence;
 use super::palette::{Paint, Palette};
-use super::phrase::{one_line, settings};
+use super::phrase::{self, one_line, settings};
 use super::text::columns::{Cell, lines};
 use super::text::{by_query, printed, word};
 use crate::engine::outcome::{CallResult, QueryResult};
@@ -43,7 +42,7 @@ fn row(result: &QueryResult) -> Vec<Cell> {
         Cell::left(estimate),
         Cell::left(interval),
         Cell::right(counted(result.consumed.counts.trials, "trial")),
-        Cell::left(result.model.as_ref().map_or(String::new(), sentence)),
+        Cell::left(result.model.as_ref().map_or(String::new(), phrase::model)),
         Cell::left(result.shortfall().map_or("", |shortfall| shortfall.name())).paint(Paint::Caution),
     ]
 }

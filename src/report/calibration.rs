@@ -2,41 +2,13 @@
 
 use super::number::plain;
 use super::palette::Palette;
+use super::phrase::span;
 use super::text::columns::{Cell, lines};
-use crate::engine::outcome::{CallResult, ModelError};
+use crate::engine::outcome::CallResult;
 use crate::replay::calibrate::{Bin, CalibratedProperty, CalibratedRegion, Calibration, DRIFTED};
 use crate::report::html::{Page, Table};
 use crate::stats::{Counts, clopper_pearson};
 use std::fmt::Write as _;
-
-/// The sentence beside a verdict.
-pub(super) fn sentence(error: &ModelError) -> String {
-    let ModelError { site, date, from, to, asked, persons, held, low, high } = error;
-    let when = date.as_ref().map_or(String::new(), |date| format!(" on {date}"));
-    let people = format!("of {asked} persons recorded at {site}{when}");
-    if *persons == 0 {
-        return format!("{people} none had P {}, so nothing is known", span(*from, *to));
-    }
-    let (low, high) = ((100.0 * low).floor(), (100.0 * high).ceil());
-    let bound = match (from, to) {
-        (_, to) if *to >= 1.0 => format!("at least {low} %"),
-        (from, _) if *from <= 0.0 => format!("at most {high} %"),
-        _ => format!("{low} to {high} %"),
-    };
-    format!(
-        "{people} {persons} had P {}; it was true of {held}, so of {bound} of such verdicts (95 %)",
-        span(*from, *to)
-    )
-}
-
-/// `>= 0.9`, `in 0.5 .. 0.9`, `< 0.1`
-fn span(from: f64, to: f64) -> String {
-    match (from <= 0.0, to >= 1.0) {
-        (false, true) => format!(">= {}", plain(from)),
-        (true, false) => format!("< {}", plain(to)),
-        _ => format!("in {} .. {}", plain(from), plain(to)),
-    }
-}
 
 /// A calibration.
 pub fn text(found: &Calibration) -> String {

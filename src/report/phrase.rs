@@ -1,6 +1,7 @@
 //! Phrases about a result that several formats share.
 
-use crate::engine::outcome::QueryResult;
+use super::number::plain;
+use crate::engine::outcome::{ModelError, QueryResult};
 
 /// A query on one line, as written.
 pub(super) fn one_line(query: &str) -> String {
@@ -33,5 +34,34 @@ pub(super) fn certified(result: &QueryResult) -> String {
             format!("{}, within the horizon of {horizon}", result.certifies)
         }
         _ => result.certifies.clone(),
+    }
+}
+
+/// How often a verdict was true of recorded people.
+pub(super) fn model(error: &ModelError) -> String {
+    let ModelError { site, date, from, to, asked, persons, held, low, high } = error;
+    let when = date.as_ref().map_or(String::new(), |date| format!(" on {date}"));
+    let people = format!("of {asked} persons recorded at {site}{when}");
+    if *persons == 0 {
+        return format!("{people} none had P {}, so nothing is known", span(*from, *to));
+    }
+    let (low, high) = ((100.0 * low).floor(), (100.0 * high).ceil());
+    let bound = match (from, to) {
+        (_, to) if *to >= 1.0 => format!("at least {low} %"),
+        (from, _) if *from <= 0.0 => format!("at most {high} %"),
+        _ => format!("{low} to {high} %"),
+    };
+    format!(
+        "{people} {persons} had P {}; it was true of {held}, so of {bound} of such verdicts (95 %)",
+        span(*from, *to)
+    )
+}
+
+/// `>= 0.9`, `in 0.5 .. 0.9`, `< 0.1`
+pub(super) fn span(from: f64, to: f64) -> String {
+    match (from <= 0.0, to >= 1.0) {
+        (false, true) => format!(">= {}", plain(from)),
+        (true, false) => format!("< {}", plain(to)),
+        _ => format!("in {} .. {}", plain(from), plain(to)),
     }
 }

@@ -5,10 +5,9 @@ use super::chart::Mark;
 use crate::engine::outcome::{
     Histogram, Interval, QueryResult, RankedOption, Shortfall, Side, Verdict, Witness,
 };
-use crate::report::calibration::sentence;
 use crate::report::number::{count, counted, plain};
 use crate::report::palette::Paint;
-use crate::report::phrase::{certified, endless, one_line, settings};
+use crate::report::phrase::{self, certified, endless, one_line, settings};
 use crate::report::svg::scale::Scale;
 use crate::report::{figure, json, text};
 use std::fmt::Write as _;
@@ -173,7 +172,7 @@ fn facts(
         figures,
         every: text::under_each(result),
         certified: certified(result),
-        model: result.model.as_ref().map(sentence),
+        model: result.model.as_ref().map(phrase::model),
         given: result.asked.given.clone(),
         trials: text::trials(result),
         histogram: histogram.unwrap_or_default(),

@@ -9,10 +9,9 @@ use crate::engine::outcome::{
     Comparison, Distribution, Histogram, Interval, Kind, QueryResult, Ranking, Rare, Shortfall, Shows, Side,
     Stop, Verdict, Witness,
 };
-use crate::report::calibration::sentence;
 use crate::report::number::{brief, clock, count, counted, duration, interval, plain, readable, some};
 use crate::report::palette::{Paint, Palette};
-use crate::report::phrase::{certified, endless, one_line, settings};
+use crate::report::phrase::{self, certified, endless, one_line, settings};
 use std::fmt::Write as _;
 
 /// Writes the block of one result.
@@ -35,7 +34,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
         line(text, &format!("certified: {statement}"));
     }
     if let Some(error) = &result.model {
-        line(text, &format!("model: {}", sentence(error)));
+        line(text, &format!("model: {}", phrase::model(error)));
     }
     if let Some(given) = &result.asked.given {
         line(text, &format!("given: {given}"));

@@ -8,8 +8,7 @@ mod rows;
 use super::number::{count, counted, duration, rate, some};
 use super::palette::{Paint, Palette};
 use crate::engine::outcome::{CallResult, QueryResult, Shortfall, Verdict};
-use crate::report::calibration::sentence;
-use crate::report::phrase::{certified, settings};
+use crate::report::phrase::{self, certified, settings};
 pub(super) use block::{counts, moment, shown, trials, word};
 use columns::Cell;
 pub(super) use every::lines as under_each;
@@ -149,7 +148,7 @@ fn write_sweep(text: &mut String, results: &[&QueryResult], palette: Palette) {
     }
     for result in results {
         if let Some(error) = &result.model {
-            rows::line(text, &format!("model for {}: {}", settings(result), sentence(error)));
+            rows::line(text, &format!("model for {}: {}", settings(result), phrase::model(error)));
         }
         block::remarks(text, result, &format!("{}: ", settings(result)), palette);
         for witness in &result.witnesses {
