@@ -159,6 +159,8 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     files.velocity = names.velocity;
     if let Some(name) = names.calibration {
         reader.calibration(name);
+        // Without it nothing more can be said of what asks for the laws of the site.
+        complete &= reader.inputs.calibration.is_some();
         files.site = reader.inputs.calibration.as_ref().and_then(Calibration::site);
     }
     for request in requests(&scenario) {

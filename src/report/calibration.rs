@@ -21,7 +21,11 @@ pub fn text(found: &Calibration) -> String {
         found.persons, found.later, found.trials, found.seed
     );
     for property in &found.properties {
-        let _ = writeln!(out, "{}", property.name);
+        let unresolved = match property.unresolved {
+            0 => String::new(),
+            many => format!(" ({many} unresolved: the recording does not tell)"),
+        };
+        let _ = writeln!(out, "{}{unresolved}", property.name);
         write_table(&mut out, &BINS, property.bins.iter().map(bin));
         out.push('\n');
     }

@@ -124,8 +124,25 @@ fn what_does_not_fit_is_refused() {
         "E0727",
         "none of these",
     );
+    // A formula without a bound is another one with another horizon; one with a bound is not.
+    place.write("c.bltl", b"property ever = F (y(user) > 1 m)\nestimate P(ever) within 0.2\n");
+    let ever = ["calibrate", "a.scn", "c.bltl", "--tracks", "here", "-o", "c.calibration"];
+    assert_eq!(place.call(&ever).code, Some(0));
+    place.write("c.scn", MODEL.replace("horizon = 4.8", "horizon = 6").as_bytes());
+    refused(
+        &["check", "c.scn", "c.bltl", "-q", "--calibration", "c.calibration"],
+        "E0727",
+        "horizon of 4.8 s",
+    );
+    let same = place.call(&["check", "c.scn", "a.bltl", "-q", "--calibration", "a.calibration"]);
+    assert!(same.out.contains("model: "), "{}", same.err);
+    let cut = MODEL.replace("speed = site", "speed = site in 0 m/s .. 2 m/s");
+    check(&cut, ASKED, "E0305", "recorded");
+    refused(&["calibrate", "a.scn", "a.bltl", "--tracks", "here", "--trials", "0"], "E0705", "trials");
     refused(&["check", "a.scn", "a.bltl", "-q"], "E0728", "--calibration");
     refused(&["check", "a.scn", "a.bltl", "-q", "--calibration", "a.scn"], "E0726", "no calibration");
+    let one = place.call(&["check", "a.scn", "a.bltl", "-q", "--calibration", "a.scn"]);
+    assert!(!one.err.contains("E0728"), "one fault, one error: {}", one.err);
     refused(&["check", "a.scn", "a.bltl", "-q", "--calibration", "none"], "E0701", "does not exist");
     let onto = place.call(&["calibrate", "a.scn", "a.bltl", "--tracks", "here", "-o", "a.bltl"]);
     assert!(onto.code == Some(2) && onto.err.contains("a.bltl"), "{}", onto.err);

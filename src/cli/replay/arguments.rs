@@ -124,8 +124,8 @@ pub(in crate::cli) struct CalibrateCommand {
     #[command(flatten)]
     pub(super) span: Span,
     /// Trials of each person.
-    #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count)]
-    pub(super) trials: u64,
+    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    pub(super) trials: u32,
     /// Whoever was recorded slower than this, in m/s, is left out.
     #[arg(long, value_name = "SPEED", default_value_t = 0.5)]
     pub(super) speed: f64,

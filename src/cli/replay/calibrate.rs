@@ -31,7 +31,7 @@ pub(in crate::cli) fn run(arguments: &CalibrateCommand, colors: Colors) -> Exit 
         date: arguments.date.clone(),
         persons: arguments.persons as usize,
         speed: arguments.speed,
-        trials: arguments.trials,
+        trials: u64::from(arguments.trials),
         seed: arguments.span.seed,
         formulas: Vec::new(),
     };

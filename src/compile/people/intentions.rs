@@ -164,7 +164,7 @@ fn recorded_speed(context: &mut Context<'_>, value: &Value, (speed, alone): (f64
     let (Value::Plain(expr) | Value::Truncated { law: expr, .. }) = value else {
         return laws::parameter_law(context, Parameter::Speed, value, &Locals::default());
     };
-    if is_of_site(expr) {
+    if is_of_site(expr) && matches!(value, Value::Plain(_)) {
         let pace = site(context, expr)?.pace;
         return Ok(pace.scaled(speed).unwrap_or(Law::Constant(speed)));
     }

@@ -4,6 +4,7 @@ use super::{Bin, Calibration};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::tick::Tick;
 use crate::compile::Study;
+use crate::compile::study::{Query, World};
 use crate::engine::outcome::{ModelError, QueryResult};
 use crate::model::Body;
 use crate::syntax::ast::{Expr, PropertyFile, PropertyItem};
@@ -92,6 +93,18 @@ impl Calibration {
         }
         if !study.worlds.iter().flat_map(|world| world.kinds.values()).any(|body| print(body) == self.body) {
             return wrong(format!("one of people of another kind than `{}` as it was", self.kind));
+        }
+        let ranges_further = |query: &Query| {
+            let is_asked =
+                query.name.as_ref().is_some_and(|name| self.properties.iter().any(|one| one.name == *name));
+            let horizon = |world: &World| world.scenario.clock.seconds(world.scenario.horizon);
+            let worlds = query.ask.worlds().into_iter().filter_map(|at| study.worlds.get(at));
+            is_asked
+                && query.horizon.is_some()
+                && worlds.map(horizon).any(|own| (own - self.horizon).abs() > 1e-9)
+        };
+        if study.queries.iter().any(ranges_further) {
+            return wrong(format!("one with a horizon of {} s", self.horizon));
         }
         let other = study.tracks.iter().find(|(_, velocity)| *velocity != self.velocity);
         if let Some((tracks, _)) = other {

@@ -21,7 +21,7 @@ mod apply;
 mod people;
 mod site;
 
-use super::evaluate::{Evaluating, Predicted, evaluate};
+use super::evaluate::{Evaluating, PREDICTED, Predicted, evaluate};
 use super::instants::Instant;
 use super::kinds::user_kind;
 use super::monitor::monitor;
@@ -43,7 +43,7 @@ use serde_json::{Value, json};
 /// Version of the form of the file.
 const SCHEMA: u32 = 1;
 /// Fewer persons calibrate nothing.
-pub const FEWEST: usize = 20;
+const FEWEST: usize = 20;
 /// Fewer persons test nothing.
 const FEWEST_LATER: usize = 10;
 /// The ends of the bins of a probability.
@@ -78,6 +78,8 @@ pub struct Calibration {
     pub later: u64,
     /// Length of a step, s.
     pub step: f64,
+    /// Horizon, s; it counts where a formula has an operator without a bound.
+    pub horizon: f64,
     /// The kind of the people.
     pub kind: String,
     /// Fingerprint of that kind.
@@ -101,6 +103,8 @@ pub struct CalibratedProperty {
     pub name: String,
     /// Fingerprint of its formula and of what that may use.
     pub formula: String,
+    /// Persons of whom the recording does not tell, all together.
+    pub unresolved: u64,
     /// The bins, by ascending probability.
     pub bins: Vec<Bin>,
 }
@@ -179,7 +183,7 @@ impl Calibrating {
         };
         if first < FEWEST {
             let said = format!(
-                "{first} of the {} persons who move would calibrate, of different groups",
+                "{} persons of different groups move and are recorded for {PREDICTED} s: {first} would calibrate",
                 people.len()
             );
             return wrong(said, "20 are the fewest, of 30 who were recorded; 60 to 120 are better");
@@ -215,13 +219,14 @@ impl Calibrating {
         let judged: Vec<Judged> = monitor(replay, &people, Beyond::Onward, threads)?;
         let options = Evaluating { trials: self.trials, seed: self.seed };
         let found = evaluate(replay, &kind, &judged, &options, (threads, drivers))?;
-        let (step, body) = kind_of(replay, &people, &kind)?;
+        let ((step, horizon), body) = kind_of(replay, &people, &kind)?;
         let is_first = |id: u32| people[..first].iter().any(|one| one.person == id);
         let (turns, paces) = site::changes(replay, &people[..first]);
         let properties: Vec<CalibratedProperty> = (replay.formulas.names.iter().enumerate())
             .map(|(k, name)| CalibratedProperty {
                 name: name.clone(),
                 formula: self.print_of(name),
+                unresolved: found.unresolved[k],
                 bins: bins(&found, k, is_first),
             })
             .collect();
@@ -242,6 +247,7 @@ impl Calibrating {
             persons: first as u64,
             later: (people.len() - first) as u64,
             step,
+            horizon,
             kind,
             body,
             turns,
@@ -258,12 +264,15 @@ impl Calibrating {
     }
 }
 
-/// The step of the scenario, s, and the fingerprint of a kind, where the model can be compiled first.
-fn kind_of(replay: &Replay, people: &[Instant], kind: &str) -> Result<(f64, String), Vec<Diagnostic>> {
+/// The step and the horizon of the scenario, s, and the fingerprint of a kind, where the model can be compiled first.
+fn kind_of(replay: &Replay, people: &[Instant], kind: &str) -> Result<((f64, f64), String), Vec<Diagnostic>> {
     let study = people.iter().find_map(|instant| replay.study_at(*instant).ok());
     let world = study.as_ref().and_then(|study| study.worlds.get(study.base));
-    let of_world =
-        |world: &World| Some((world.scenario.clock.seconds(Tick(1)), apply::print(world.kinds.get(kind)?)));
+    let of_world = |world: &World| {
+        let seconds = |ticks| world.scenario.clock.seconds(ticks);
+        let times = (seconds(Tick(1)), seconds(world.scenario.horizon));
+        Some((times, apply::print(world.kinds.get(kind)?)))
+    };
     world.and_then(of_world).ok_or_else(|| {
         let error = Diagnostic::placeless(Code::E0705, "the model has no kind of recorded people");
         vec![error.hint("declare one: `kind adult: sfm preset smc2 { noise = 0.1 m/s }`")]
