@@ -71,6 +71,10 @@ pub(crate) fn group<'a>(context: &mut Context<'a>, decl: &'a GroupDecl, people: 
     let with = attachment::with(context, &decl.name, &decl.with);
     let common = common(context, decl, people);
     let (Ok(count), Ok((common, rest, placed))) = (count, common) else {
+        if let Some(recorded) = &decl.recorded {
+            let _ = recordings::sighted(context, recorded, false);
+            intentions::look_at(context, &parted(&decl.body).0);
+        }
         people::define_empty(context, &decl.name, decl.particle.is_none() || decl.plural, with);
         return;
     };

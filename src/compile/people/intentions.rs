@@ -25,6 +25,7 @@ const MOST_KAPPA: f64 = 1e4;
 /// What fields say of the intentions of people who were recorded.
 pub(crate) fn intended<'f>(context: &mut Context<'_>, fields: &[&'f Field]) -> Lowered<Intended<'f>> {
     let mut all = Intended::default();
+    let mut failed = None;
     for (k, field) in fields.iter().enumerate() {
         let name = field.name.name.as_str();
         if let Some(first) = fields[..k].iter().find(|before| before.name.name == name) {
@@ -32,10 +33,19 @@ pub(crate) fn intended<'f>(context: &mut Context<'_>, fields: &[&'f Field]) -> L
             return context.report(error.related(first.name.span, "first set here"));
         }
         match name {
-            "heading" => all.turn = Some(turn(context, &field.value)?),
+            "heading" => match turn(context, &field.value) {
+                Ok(law) => all.turn = Some(law),
+                Err(reported) => failed = Some(reported),
+            },
             "speed" => all.speed = Some(&field.value),
-            _ => all.goals = Some(goals_of(context, field)?),
+            _ => match goals_of(context, field) {
+                Ok(goals) => all.goals = Some(goals),
+                Err(reported) => failed = Some(reported),
+            },
         }
+    }
+    if let Some(reported) = failed {
+        return Err(reported);
     }
     if let (Some(_), Some(goals)) = (&all.turn, &all.goals) {
         return context
@@ -43,6 +53,13 @@ pub(crate) fn intended<'f>(context: &mut Context<'_>, fields: &[&'f Field]) -> L
                 hint: "remove one of them: who goes to a destination heads for it"));
     }
     Ok(all)
+}
+
+/// The parts of a law of speed that nobody gets, since something else is wrong, to report their errors as well.
+pub(crate) fn look_at(context: &mut Context<'_>, fields: &[&Field]) {
+    for field in fields.iter().filter(|field| field.name.name == "speed") {
+        let _ = recorded_speed(context, &field.value, (1.0, 1.0));
+    }
 }
 
 /// The law of the angle between the heading and the recorded one.

@@ -200,6 +200,7 @@ fn declare_recorded<'a>(
     only(context, &rest, &["route"]);
     let base = kind.and_then(|kind| kinds::body(context, &kind, &decl.kind));
     let (Ok(found), Ok(base), Ok(route), Ok(intended)) = (found, base, route, intended) else {
+        intentions::look_at(context, &wants);
         define_empty(context, &decl.name, decl.plural || decl.count.is_some(), with);
         return;
     };
