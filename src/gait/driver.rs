@@ -22,6 +22,8 @@ const CELL: f64 = 0.08;
 const PAUSE: f64 = 0.25;
 /// After so many pauses a way around those who stand there is searched.
 const TRIES: u32 = 3;
+/// After so many pauses next to those who stand in its goal somebody is there.
+const WAITS: u32 = 8;
 /// Most steps that this search expands.
 const AROUND: u32 = 300;
 /// Whoever is farther away when a step begins does not change it, m.
@@ -85,6 +87,8 @@ struct Remembered {
     point: Vec2,
     /// How often in a row no step was found.
     tries: u32,
+    /// How many pauses in a row it has stood next to those who stand in its goal.
+    waits: u32,
 }
 
 /// Gives steps to all agents of stepped kinds.
@@ -154,6 +158,22 @@ fn trajectory(step: &PlacedStep, is_last: bool) -> Option<Trajectory> {
     Trajectory::through(&(0..=SPANS).map(sample).collect::<Vec<_>>())
 }
 
+/// Whether somebody is next to bodies that stand in a goal: nobody fits in between. Who stands next to these counts as they do.
+fn is_next(at: Vec2, radius: f64, goal: Vec2, standing: &[OtherBody]) -> bool {
+    let (mut inside, mut around): (Vec<OtherBody>, Vec<OtherBody>) =
+        standing.iter().partition(|one| (one.at - goal).norm() < one.radius + radius);
+    while let Some(one) = inside.pop() {
+        let is_near = |p: Vec2, of: f64| (p - one.at).norm() < one.radius + 2.0 * radius + of;
+        if is_near(at, radius) {
+            return true;
+        }
+        let (near, others): (Vec<_>, Vec<_>) =
+            around.into_iter().partition(|other| is_near(other.at, other.radius));
+        (inside, around) = ([inside, near].concat(), others);
+    }
+    false
+}
+
 impl Steppers {
     /// Who somebody is: the same in all steps of a trial.
     fn person(&self, situation: &Situation<'_>) -> Option<Arc<dyn Gait + Send + Sync>> {
@@ -185,6 +205,7 @@ impl Steppers {
             goal: None,
             point: situation.position,
             tries: 0,
+            waits: 0,
         })
     }
 
@@ -215,6 +236,10 @@ impl Steppers {
             return Some(Plan::NoWay);
         }
         let stream = Stream::of(situation.key, situation.entity, Purpose::Step);
+        let scene = &situation.scenario.scene;
+        let left = situation.legs.len();
+        let draws = Stream::of(situation.key, situation.entity, Purpose::Plan);
+        let draw = |n: u32| draws.uniform_pair((left as u32) << 8 | n);
         let field = match (situation.advice, situation.goal()) {
             (Some(direction), _) => {
                 known.walker.forget_planned();
@@ -222,26 +247,43 @@ impl Steppers {
                 Arc::new(GoalField::straight(known.point))
             }
             (None, Some(goal)) => {
-                let left = situation.legs.len();
                 if known.goal.as_ref().is_none_or(|(known, then)| known != goal || *then != left) {
-                    let scene = &situation.scenario.scene;
-                    let draws = Stream::of(situation.key, situation.entity, Purpose::Plan);
-                    let draw = |n: u32| draws.uniform_pair((left as u32) << 8 | n);
                     known.walker.forget_planned();
                     // In the paper walks end near the middle.
                     known.point = match stepper.search {
                         SearchRule::AsPublished => middle(scene, goal),
-                        _ => point_in(scene, |p| floor.ground.is_free(p), goal, radius, draw),
+                        _ => floor.ground.beside(point_in(
+                            scene,
+                            |p| floor.ground.is_free(p),
+                            goal,
+                            radius,
+                            draw,
+                        )),
                     };
                     known.goal = Some((goal.clone(), left));
                 }
-                floor.field(middle(&situation.scenario.scene, goal))
+                floor.field(middle(scene, goal))
             }
             (None, None) => return Some(Plan::Stand(f64::INFINITY)),
         };
         let others = Self::others(situation, radius);
         let standing: Vec<OtherBody> =
             others.iter().copied().filter(|other| other.velocity.norm() < STANDS).collect();
+        let is_taken = |p: Vec2| standing.iter().any(|one| (one.at - p).norm() < one.radius + radius);
+        if let (None, Some(goal)) = (situation.advice, situation.goal())
+            && is_taken(known.point)
+        {
+            let is_free = |p: Vec2| floor.ground.is_free(p) && !is_taken(p);
+            let point = point_in(scene, is_free, goal, radius, draw);
+            if is_free(point) {
+                known.walker.forget_planned();
+                known.point = point;
+            } else if is_next(situation.position, radius, known.point, &standing) {
+                known.waits += 1;
+                return Some(if known.waits > WAITS { Plan::There } else { Plan::Stand(PAUSE) });
+            }
+        }
+        known.waits = 0;
         let is_blocked = known.tries > 0
             && known.tries.is_multiple_of(TRIES)
             && situation.advice.is_none()

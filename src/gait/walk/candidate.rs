@@ -18,9 +18,8 @@ pub(super) const HEADING: f64 = 0.35;
 /// Larger errors of the heading count as this, rad.
 const MOST_ERROR: f64 = 1.5;
 
-/// Steps whose chord differs by more from the direction of the way may be turned, rad: about what noise does (sway turns ends of
-/// steps, and no chords).
-const OFF: f64 = 1.0 * PI / 180.0;
+/// The least first share of the way of a step that a turn takes; the widest one takes the whole way.
+const AT_ONCE: f64 = 0.2;
 
 /// The weight of a step falls with the square of the angle e between its chord and the way, as `1/(1 + e^2/(2 s^2))`, s this, rad:
 /// recorded strides on straight ways have a standard deviation of 0.9 degrees. The tail is that of Cauchy's law, so that among
@@ -93,7 +92,7 @@ impl Walk<'_> {
                 let ahead =
                     self.way(pose.at + way.direction * end.norm()).map_or(way.direction, |w| w.direction);
                 let error = angle(turned(end, pose.heading), ahead);
-                (if error.abs() > OFF { error * share } else { 0.0 }, 1.0)
+                (error * share, 1.0)
             }
             Change::Swerve(share, scale) => (turn::WIDEST * share, scale),
         };
@@ -101,7 +100,10 @@ impl Walk<'_> {
             let (own, widest) = (own(), turn::limit(&shape));
             let by = (own + by).clamp(-widest.max(own.abs()), widest.max(own.abs())) - own;
             // Measured medians: 1.30 m/s straight on, 1.12 m/s in turns of 40 degrees.
-            shape = turn::bent(&shape, by, scale * (1.0 - 0.2 * by.abs().min(turn::WIDEST)));
+            let slower = 1.0 - 0.29 * by.abs().min(turn::WIDEST).powi(2);
+            // A small correction is made as the step begins.
+            let within = (by.abs() / turn::WIDEST).clamp(AT_ONCE, 1.0);
+            shape = turn::bent(&shape, by, scale * slower, within);
             after.last = Some((foot, shape));
         }
         let step = PlacedStep::new(foot, pose.at, pose.heading, shape);
@@ -133,7 +135,7 @@ impl Walk<'_> {
             duration: 1.0,
         };
         [(1.0, 1.0), (0.5, 1.0), (1.0, 0.6)].into_iter().any(|(share, scale)| {
-            let shape = turn::bent(&line(scale), share * error, 1.0);
+            let shape = turn::bent(&line(scale), share * error, 1.0, 1.0);
             self.is_clear(&PlacedStep::new(found.step.foot.other(), at, heading, shape))
         })
     }

@@ -11,6 +11,9 @@ const LINES: usize = 12;
 /// The body keeps this distance in addition to its radius, m. The path may be that far from its lines.
 const MARGIN: f64 = 1e-3;
 
+/// So often at most a goal is moved beside a barrier.
+const MOVES: usize = 4;
+
 /// Somebody nearer to a barrier than that comes no nearer than this, m: more than rounding, and a turn on the spot.
 const NEARER: f64 = 2e-8;
 
@@ -42,6 +45,27 @@ impl Ground {
         let keep = self.free.reach() + MARGIN;
         let place = Segment::new(p, p);
         self.free.is_free(p) && !self.free.sight().any_along(&place, keep, |piece| piece.distance(p) < keep)
+    }
+
+    /// A place itself, or where it is a hair too near to a barrier for a step to end there, one beside it.
+    pub fn beside(&self, mut p: Vec2) -> Vec2 {
+        let keep = self.free.reach() + MARGIN;
+        for _ in 0..MOVES {
+            let near = self.free.sight().near(p, keep);
+            let Some(nearest) = near
+                .iter()
+                .map(|piece| piece.nearest(p))
+                .min_by(|a, b| (p - a).norm_squared().total_cmp(&(p - b).norm_squared()))
+            else {
+                return p;
+            };
+            let distance = (p - nearest).norm();
+            if distance >= keep || distance < keep - 2.0 * MARGIN {
+                return p;
+            }
+            p = nearest + (p - nearest) * (keep * (1.0 + 1e-9) / distance);
+        }
+        p
     }
 
     /// Whether a body meets no barrier on the whole path of a step: its center keeps the radius at every point of the curve.

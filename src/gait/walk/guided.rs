@@ -82,8 +82,8 @@ impl Walk<'_> {
         };
         let is_clear = |found: &Candidate| self.is_clear(&found.step) && self.goes_on(found);
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
-        let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
-        let mut options: Vec<_> = (0..count).filter_map(|k| option(pose, k, &steer(k))).collect();
+        let mut options: Vec<_> =
+            (0..count).filter_map(|k| option(pose, k, &|share| Change::Steer(0.6 + 0.8 * share))).collect();
         let chosen = match choose(&options, is_clear, gap) {
             Ok((chosen, gap)) if gap >= WIDE => chosen,
             _ => {

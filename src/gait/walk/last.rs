@@ -49,21 +49,27 @@ impl Walk<'_> {
         others: Option<Gaps>,
     ) -> Result<Chain, Rejected> {
         let drawn = self.drawn(pose, (0..candidates).map(|k| Draws::of(self.stream, number, FIRST + k)));
-        let option = |(candidate, first): (u32, Stance)| {
-            let (cost, chain) = self.last_option(pose, (first, steps), number, candidate)?;
-            Some((self.choice(number, candidate).0 - cost, chain))
-        };
         let is_clear = |chain: &Chain| chain.iter().all(|(step, _)| self.is_clear(step));
         let gap = |chain: &Chain| others.zip(chain.first()).map(|(others, (step, _))| others(step));
-        choose(&(FIRST..).zip(drawn).filter_map(option).collect::<Vec<_>>(), is_clear, gap)
-            .map(|(chain, _)| chain)
+        let chosen = |is_straight: bool| {
+            let option = |(candidate, first): (u32, &Stance)| {
+                let (cost, chain) =
+                    self.last_option(pose, (*first, steps, is_straight), number, candidate)?;
+                Some((self.choice(number, candidate).0 - cost, chain))
+            };
+            choose(&(FIRST..).zip(&drawn).filter_map(option).collect::<Vec<_>>(), is_clear, gap)
+        };
+        // Close to a barrier there is no room to sway.
+        let swaying = chosen(false);
+        let found = if let Err(Rejected::Barriers) = swaying { chosen(true) } else { swaying };
+        found.map(|(chain, _)| chain)
     }
 
-    /// The last steps of which `first` is the first one as it was drawn, with what they cost.
+    /// The last steps of which `first` is the first one as it was drawn, with what they cost. The very last one may be straight.
     fn last_option(
         &self,
         pose: &Pose,
-        (first, steps): (Stance, u32),
+        (first, steps, is_straight): (Stance, u32, bool),
         number: u32,
         candidate: u32,
     ) -> Option<(f64, Chain)> {
@@ -87,7 +93,7 @@ impl Walk<'_> {
             let scale = target.norm() / both.norm().max(1e-9);
             // Half of the turn of both steps.
             let by = angle(both, target);
-            shape = turn::bent(&shape, by, scale);
+            shape = turn::bent(&shape, by, scale, 1.0);
             if !turn::is_legal(&shape) {
                 return None;
             }
@@ -97,7 +103,8 @@ impl Walk<'_> {
             chain.push(made);
             (shape, after) = second(&at.stance)?;
         }
-        let (shape, scale, by) = turn::fitted(&shape, seen(self.goal - at.at, at.heading))?;
+        let fit = if is_straight { turn::straightened } else { turn::fitted };
+        let (shape, scale, by) = fit(&shape, seen(self.goal - at.at, at.heading))?;
         let uneven = scale / common.unwrap_or(scale);
         cost += by.abs() + (uneven - 1.0).abs();
         chain.push(place(&at, shape, after).1);

@@ -82,7 +82,11 @@ impl Walk<'_> {
             {
                 Ok(chain) => chain,
                 Err(Rejected::Bodies) => return Err(NoStep::Crowded),
-                Err(Rejected::Barriers) if self.field.is_straight() => {
+                // Who walks up to the goal and has no last step stops first.
+                Err(Rejected::Barriers)
+                    if self.field.is_straight()
+                        || pose.stance.last.is_some() && self.remaining(&pose, &way) == Some(1) =>
+                {
                     return Err(NoStep::Exhausted { expansions: 0 });
                 }
                 Err(Rejected::Barriers) => FALLBACK.steps(self, (&pose, &way, number))?,

@@ -9,6 +9,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Most by which a step turns, rad: 50 degrees (Hase and Stein 1999 report more in turns on one foot).
 pub(super) const WIDEST: f64 = 50.0 * PI / 180.0;
 
+/// Who goes straight to a place does not turn by more than this, rad.
+const ASIDE: f64 = 20.0 * PI / 180.0;
+
 /// Slower steps may turn by up to 90 degrees, m/s.
 const SLOW: f64 = 0.7;
 
@@ -22,18 +25,21 @@ pub(super) fn is_legal(shape: &Shape) -> bool {
     angle(Vec2::x(), shape.curve().tangent(1.0)).abs() <= limit(shape)
 }
 
-/// The step bent along an arc by an angle, rad, positive to the left, and scaled. Its direction at the begin stays.
-pub(super) fn bent(shape: &Shape, turn: f64, scale: f64) -> Shape {
+/// The step bent by an angle, rad, positive to the left, and scaled: along an arc within a first share of its way, straight on
+/// from there. Its direction at the begin stays.
+pub(super) fn bent(shape: &Shape, turn: f64, scale: f64, within: f64) -> Shape {
     let end = end_of(shape).norm() * scale;
-    // The place x on the way of the step goes to x on an arc of this curvature, and y stays across it.
-    let curvature = if end > 1e-6 { turn / end } else { 0.0 };
+    // The place x on the way of the step goes to x on an arc of this curvature and then a line, and y stays across it.
+    let arc = end * within;
+    let curvature = if arc > 1e-6 { turn / arc } else { 0.0 };
     let bend = |p: Vec2| {
         let (x, y) = (p.x * scale, p.y * scale);
-        let half = 0.5 * x * curvature;
+        let (on_arc, on_line) = if within < 1.0 { (x.min(arc), (x - arc).max(0.0)) } else { (x, 0.0) };
+        let half = 0.5 * on_arc * curvature;
         let (sin, cos) = math::sin_cos(half);
-        let chord = if half.abs() > 1e-4 { x * sin / half } else { x * (1.0 - half * half / 6.0) };
+        let chord = if half.abs() > 1e-4 { on_arc * sin / half } else { on_arc * (1.0 - half * half / 6.0) };
         let (across, along) = (2.0 * sin * cos, 1.0 - 2.0 * sin * sin);
-        Vec2::new(chord * cos - y * across, chord * sin + y * along)
+        Vec2::new(chord * cos + on_line * along - y * across, chord * sin + on_line * across + y * along)
     };
     Shape { landmarks: shape.landmarks.map(bend), duration: shape.duration }
 }
@@ -43,7 +49,7 @@ pub(super) fn bent(shape: &Shape, turn: f64, scale: f64) -> Shape {
 pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
     let (mut scale, mut turn) = (target.norm() / end_of(shape).norm().max(1e-9), 0.0);
     for _ in 0..4 {
-        let made = bent(shape, turn, scale);
+        let made = bent(shape, turn, scale, 1.0);
         let end = end_of(&made);
         scale *= target.norm() / end.norm().max(1e-9);
         turn += 2.0 * angle(end, target);
@@ -51,7 +57,7 @@ pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
             return None;
         }
     }
-    let mut made = bent(shape, turn, scale);
+    let mut made = bent(shape, turn, scale, 1.0);
     let miss = target - end_of(&made);
     for (k, p) in made.landmarks.iter_mut().enumerate() {
         let share = (k + 1) as f64 / SPANS as f64;
@@ -59,6 +65,16 @@ pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
     }
     made.landmarks[SPANS - 1] = target;
     (miss.norm() < 0.02 && is_legal(&made)).then_some((made, scale, turn))
+}
+
+/// The step along a straight line to a place in its frame, with the factor and the angle, rad; `None` where that takes too
+/// long a step or one to the side.
+pub(super) fn straightened(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
+    let length = end_of(shape).norm();
+    let (scale, turn) = (target.norm() / length.max(1e-9), angle(Vec2::x(), target));
+    let landmarks = shape.landmarks.map(|p| target * (p.norm() / length));
+    let is_possible = scale <= 2.0 && turn.abs() < ASIDE;
+    is_possible.then_some((Shape { landmarks, ..*shape }, scale, turn))
 }
 
 /// A turn on the spot by an angle, rad: a short arc of this radius, m.

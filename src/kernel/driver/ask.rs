@@ -107,6 +107,11 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
             course.stranded |= here;
             course.next_ask.0[lane] = f64::INFINITY;
         }
+        Plan::There => {
+            course.stands |= here;
+            course.rest(lane, at);
+            course.next_ask.0[lane] = f64::INFINITY;
+        }
         Plan::Stand(seconds) => {
             course.stands |= here;
             if is_alone {
@@ -135,10 +140,15 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
     if plan == Plan::NoWay {
         state.no_way |= Mask::lane(state.layout.trial_of(lane));
     }
+    let is_there = plan == Plan::There;
     let held = state.plans.held_mut(slot);
     (held.plan, held.point, held.stuck) = (plan, 0, 0);
     if was_stepped != state.plans.is_stepped(slot) {
         state.prepare(slot, drive.dt);
+    }
+    if is_there {
+        Person::new(drive, state, slot).step();
+        return;
     }
     Person::new(drive, state, slot).renew();
     follow::pursue_at(Level::baseline(), drive, state, block, here);

@@ -8,7 +8,7 @@ use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
 use crate::base::tick::{Tick, steps_over};
 use crate::kernel::code::ground::Ground;
 use crate::kernel::code::lanes::Vector;
-use crate::kernel::plan::Occasion;
+use crate::kernel::plan::{Occasion, Plan};
 use crate::kernel::state::route::Halt;
 use crate::kernel::state::{Slot, State, Way};
 use crate::model::{Law, Move, Parameter, Route, Start};
@@ -169,7 +169,7 @@ impl<'a> Person<'a> {
                 self.tick() >= self.way.until
             } else {
                 let steps = self.state.plans.stepping(self.block).has(self.lane);
-                !steps && reached(stage, self.at(), self.radius(), self.way.origin)
+                !steps && (self.is_there() || reached(stage, self.at(), self.radius(), self.way.origin))
             };
             if !done {
                 return false;
@@ -184,10 +184,19 @@ impl<'a> Person<'a> {
             if !is_pause {
                 self.arrive();
             }
+            if self.is_there() {
+                self.state.plans.end(Slot { block: self.block, lane: self.lane });
+            }
             self.enter(self.way.stage + 1);
             self.set_out();
             self.ask(Occasion::Leg);
         }
+    }
+
+    /// Whether its driver says that it is at the goal.
+    fn is_there(&self) -> bool {
+        let slot = Slot { block: self.block, lane: self.lane };
+        self.state.plans.plan(slot) == Some(&Plan::There)
     }
 
     /// Way gone, m.
@@ -259,7 +268,7 @@ impl<'a> Person<'a> {
     /// Whether the agent is inside the last goal.
     pub(super) fn has_arrived(&self) -> bool {
         let stage = &self.drive.stages[self.way.stage as usize];
-        stage.last && reached(stage, self.at(), self.radius(), self.way.origin)
+        stage.last && (self.is_there() || reached(stage, self.at(), self.radius(), self.way.origin))
     }
 
     /// Sets the driving direction and speed that the route wants now.

@@ -20,6 +20,8 @@ pub enum Plan {
     Straight,
     /// Stands for so many seconds (infinite: for good). Then the driver is asked again. No force moves an agent that steps.
     Stand(f64),
+    /// Stands as near to the goal as those who stand in it allow: this leg is over. At the last goal the agent stays.
+    There,
     /// No way leads to the goal: stands, and the trial is counted as one in which somebody has no way.
     NoWay,
     /// Heads for each of these points in turn, m, and then for the goal of the leg. A point is passed near it, or across the

@@ -30,7 +30,7 @@ impl Errand {
     }
 }
 
-/// A free point of a goal, a radius inside if there is room.
+/// A free point of a goal, a radius inside if there is room; of a region without one its middle.
 pub fn point_in(
     scene: &Scene,
     is_free: impl Fn(Vec2) -> bool,
