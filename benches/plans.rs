@@ -108,7 +108,7 @@ fn main() {
         let _ = writeln!(out, "{pieces} pieces: {time:.1} us");
     }
     let time = best(10, 500, |n| {
-        let _ = black_box(printed(&stretches, limits, 0.0, 0.0, |k| stream.uniform(99 * n + k)));
+        let _ = black_box(printed(&stretches, limits, 0.0, 0.0, None, |k| stream.uniform(99 * n + k)));
     });
     let _ = writeln!(out, "the printed algorithm, 2 to 10 pieces: {time:.1} us a run, returned or not");
     let free = FreeSpace::new(&triangles(), 0.0);

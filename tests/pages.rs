@@ -256,7 +256,7 @@ fn through_a_door() -> Place {
 #[test]
 fn inferred_traces_are_played_and_drawn() {
     let place = through_a_door();
-    let words = ["infer", "it's <b>\"ü.csv", "-o", "i.json", "--report", "i.html"];
+    let words = ["infer", "it's <b>\"ü.csv", "--format", "json", "-o", "i.json", "--report", "i.html"];
     let scene = ["--motion", "social-force", "--scene", "door.scn"];
     let said = place.call(&[&words[..], &scene].concat());
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{}", said.err);

@@ -243,11 +243,15 @@ fn wrong_kinds_and_legs_are_refused_with_a_place_and_a_hint() {
         ("kind k: stepped { attention = 0.5 }", "unknown parameter `attention`"),
         ("kind k: stepped { height = 4 m }", "exceeds 3 m"),
         ("kind k: stepped { height = -1 m }", "must be positive"),
-        ("kind k: stepped { gait = walking }", "`gait` must be `synthetic`, or `learned` with a file"),
+        (
+            "kind k: stepped { gait = walking }",
+            "`gait` must be `synthetic`, or `learned` or `as_published` with a file",
+        ),
         ("kind k: stepped { search = guided }", "expected `guided(…)`"),
         ("kind k: stepped { search = guided(candidates = 0) }", "a whole number from 1 to 1000"),
         ("kind k: stepped { search = guided(candidate = 5) }", "unknown argument of `guided`"),
         ("kind k: stepped { search = hybrid_a_star(cell = 0 m) }", "`cell` must be"),
+        ("kind k: stepped { search = grid_a_star(cell = 1 m) }", "argument"),
         ("kind k: stepped { search = dijkstra() }", "unknown search `dijkstra`"),
         ("kind k: sfm preset helbing2000 { gait = synthetic }", "unknown parameter `gait`"),
     ] {

@@ -2,7 +2,8 @@
 
 use smc::compile::presets::PRESETS;
 use smc::engine::outcome::QueryResult;
-use smc::report::svg::frame::{Frame, picture};
+use smc::report::svg::frame::Frame;
+use smc::report::svg::picture::{Paper, Picture};
 use smc::report::svg::scale::Scale;
 use std::fs;
 use std::path::Path;
@@ -82,7 +83,7 @@ impl Figures {
         frame.line(densities().map(|x| (x, weidmann(x))), 3);
         frame.name("Weidmann 1993, ± 15 %", 3);
         draw(&mut frame, &self.diagram);
-        picture("One stream: speed over density", vec![frame])
+        Picture::charts("One stream: speed over density", vec![frame]).svg(Paper::default())
     }
 
     fn flows(&self) -> String {
@@ -93,7 +94,7 @@ impl Figures {
         frame.band(&[(0.5, low, high), (2.5, low, high)], 3);
         frame.level(high, "experiments");
         draw(&mut frame, &self.door);
-        picture("A door: flow over width", vec![frame])
+        Picture::charts("A door: flow over width", vec![frame]).svg(Paper::default())
     }
 }
 

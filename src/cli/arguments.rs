@@ -10,8 +10,8 @@ use super::simulate::choice::Keep;
 use super::simulate::destination::left_out;
 use super::terminal::ColorChoice;
 use super::values::{
-    Cores, Destination, Limit, Model, TextFormat, parse_count, parse_moment, parse_positive, parse_quiet,
-    parse_share, parse_threads, parse_trials,
+    Cores, Destination, Limit, Model, Print, TextFormat, parse_count, parse_moment, parse_positive,
+    parse_quiet, parse_share, parse_threads, parse_trials,
 };
 use super::walk::WalkCommand;
 use crate::data::table::{FORMATS, TraceFormat};
@@ -312,6 +312,9 @@ pub(super) struct Show {
     /// `text` describes the scenario, `svg` draws its plan with the shortest ways.
     #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
     pub(super) format: ShowFormat,
+    /// How wide a picture is.
+    #[command(flatten)]
+    pub(super) print: Print,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,

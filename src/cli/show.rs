@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &Show, colors: Colors) -> Exit {
         return Exit::Wrong;
     }
     let text = match (arguments.format, study.worlds.last()) {
-        (ShowFormat::Svg, Some(world)) => plan::draw(&world.scenario),
+        (ShowFormat::Svg, Some(world)) => arguments.print.svg(&plan::draw(&world.scenario)),
         _ => visible(&model::describe(study)).into_owned(),
     };
     let written = output::put(arguments.output.as_deref(), &text);

@@ -5,6 +5,7 @@ use crate::data::tracks::Velocity;
 use crate::engine::{Fault, Threads};
 use crate::library;
 use crate::report::Format;
+use crate::report::svg::picture::{Paper, Picture};
 use crate::syntax::diagnostic::Diagnostic;
 use clap::{Args, ValueEnum};
 use std::num::NonZeroU64;
@@ -20,8 +21,33 @@ pub(super) enum TextFormat {
     Json,
 }
 
+/// How wide an SVG picture is.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(super) struct Print {
+    /// Width of an SVG picture on paper, its letters 8 points high: `85mm`, `17cm`.
+    #[arg(long, value_name = "LENGTH", value_parser = parse_width)]
+    width: Option<f64>,
+}
+
+impl Print {
+    /// The picture as a file.
+    pub(super) fn svg(self, picture: &Picture) -> String {
+        picture.svg(Paper { width: self.width })
+    }
+}
+
+/// A width of paper, mm.
+fn parse_width(text: &str) -> Result<f64, String> {
+    let known = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
+    let number = known
+        .iter()
+        .find_map(|(unit, size)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * size));
+    let width = number.filter(|mm| (40.0..=1000.0).contains(mm));
+    width.ok_or_else(|| format!("`{text}` must be a width from 40mm to 1000mm: write `85mm` or `17cm`"))
+}
+
 /// The model, and the values set in it.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub(super) struct Model {
     /// Scenario file (`.scn`), or `-` for standard input.
     pub(super) scenario: String,

@@ -141,6 +141,7 @@ fn search(rule: SearchRule) -> Search {
         SearchRule::HybridAStar { cell, starters, successors } => {
             Search::HybridAStar(HybridAStar { cell, starters, successors, ..HybridAStar::default() })
         }
+        SearchRule::GridAStar => Search::GridAStar,
         SearchRule::AsPublished => Search::HybridAStar(HybridAStar::as_published()),
     }
 }

@@ -47,7 +47,9 @@ pub enum SearchRule {
         /// Steps that are tried after each.
         successors: u32,
     },
-    /// The same as in the paper: straight distances, end points, cells alone.
+    /// Straight along the shortest path over the cells of a grid, in even steps.
+    GridAStar,
+    /// As `HybridAStar` in the paper: straight distances, end points, cells alone.
     AsPublished,
 }
 

@@ -230,6 +230,7 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
                 "hybrid A* in cells of {} m, {starters} starters, {successors} successors",
                 number(cell)
             ),
+            SearchRule::GridAStar => "A* on a grid".to_owned(),
             SearchRule::AsPublished => "as published".to_owned(),
         };
         let _ = writeln!(out, "      gait {gait}; search {search}");

@@ -1,20 +1,23 @@
 //! Planned paths as data and as pictures: `smc path`.
 
 use super::number::plain;
-use super::svg::frame::{Frame, picture};
+use super::svg::frame::Frame;
+use super::svg::picture::Picture;
 use super::svg::scale::Scale;
-use super::svg::{Ink, plan};
-use crate::base::geometry::Vec2;
+use super::svg::{Drawing, Ink, plan};
+use crate::base::geometry::{Bounds, Vec2};
 use crate::model::Scenario;
 use crate::route::path::Piece;
 use crate::route::planner::{Course, Terrain};
-use crate::route::profile::Region;
+use crate::route::profile::{Printed, Region};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
 /// Points of a curve in a picture.
 const POINTS: u32 = 400;
+/// Points of a piece of a printed profile.
+const PER_PIECE: u32 = 20;
 
 /// A planned path of somebody.
 #[derive(Clone, Debug)]
@@ -79,6 +82,61 @@ pub fn to_json(paths: &[PlannedPath]) -> String {
     format!("{all:#}\n")
 }
 
+/// A run of Algorithm 1 as printed: the pieces that it asked for, and what came of it.
+#[derive(Clone, Debug)]
+pub struct PrintedRun {
+    /// Its name.
+    pub name: String,
+    /// What came of it.
+    pub run: Printed,
+}
+
+/// All runs: whether each returned, which limits it breaks, and its pieces.
+pub fn printed_to_json(runs: &[PrintedRun]) -> String {
+    let one = |PrintedRun { name, run }: &PrintedRun| match run {
+        Printed::NeverReturns(why) => json!({ "path": name, "returned": false, "why": why.phrase() }),
+        Printed::Profile(profile) => json!({
+            "path": name,
+            "returned": true,
+            "breaks": profile.violations().names(),
+            "duration_s": profile.duration().is_finite().then(|| profile.duration()),
+            "points": profile.points(1),
+        }),
+    };
+    let all = json!({ "algorithm": "printed", "paths": runs.iter().map(one).collect::<Vec<_>>() });
+    format!("{all:#}\n")
+}
+
+/// A row for each place of each run that returned, and one without numbers for each other run.
+pub fn printed_to_csv(runs: &[PrintedRun]) -> String {
+    let mut out = "path,returned,breaks,t,s,v,a\n".to_owned();
+    for PrintedRun { name, run } in runs {
+        match run {
+            Printed::NeverReturns(why) => {
+                let _ = writeln!(out, "{name},false,{},,,,", why.phrase());
+            }
+            Printed::Profile(profile) => {
+                let breaks = profile.violations().names().join(" and ");
+                for [t, s, v, a] in profile.points(PER_PIECE) {
+                    let _ = writeln!(out, "{name},true,{breaks},{t},{s},{v},{a}");
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The profiles of the runs that returned; those that break a limit say so.
+pub fn printed_curves(runs: &[PrintedRun]) -> Vec<Curve> {
+    let curve = |PrintedRun { name, run }: &PrintedRun| {
+        let Printed::Profile(profile) = run else { return None };
+        let breaks = profile.violations().names();
+        let name = if breaks.is_empty() { name.clone() } else { format!("{name}: {}", breaks.join(", ")) };
+        Some((name, profile.points(PER_PIECE)))
+    };
+    runs.iter().filter_map(curve).collect()
+}
+
 /// Times from 0 to the end of a course, `dt` seconds apart, the end included.
 fn times(course: &Course, dt: f64) -> impl Iterator<Item = f64> + '_ {
     let duration = course.duration();
@@ -119,80 +177,125 @@ pub fn to_csv(paths: &[PlannedPath], dt: f64) -> String {
     out
 }
 
-/// The map: the scene, the roadmap, and the rounded paths from where the walkers are; and where they are planned to be at some
-/// times, s.
-pub fn map(scenario: &Scenario, paths: &[PlannedPath], instants: &[f64]) -> String {
-    let mut drawing = plan::scene(scenario);
-    if let Some(terrain) = paths.iter().find_map(|path| path.terrain.as_ref()) {
-        let vertex = |k: u32| terrain.roadmap.vertices()[k as usize];
-        for &(a, b) in terrain.roadmap.edges() {
-            drawing.line(&[vertex(a), vertex(b)], Ink::ROADMAP);
-        }
-    }
+/// Colours of up to four times on a map.
+const MOMENTS: [Ink; 4] = [Ink::BARRIER, Ink::TRACE_START, Ink::TRACE_END, Ink::REGION];
+
+/// The rounded paths, with the places at some times, s.
+fn draw_paths(drawing: &mut Drawing, paths: &[PlannedPath], instants: &[f64]) {
     for path in paths {
         let line = &path.course.path;
         let steps = (line.length() * 10.0).ceil().max(1.0) as u32;
         let at = |k: u32| line.at(line.length() * f64::from(k) / f64::from(steps)).position;
         drawing.line(&(0..=steps).map(at).collect::<Vec<_>>(), Ink::WAY);
         drawing.dot(at(0), Ink::START);
-        for time in instants {
+        for (k, time) in instants.iter().enumerate() {
             let place = line.at(path.course.motion(*time).distance).position;
-            drawing.dot(place, Ink::BARRIER);
-            drawing.text(place + Vec2::new(0.0, 0.3), &format!("{} s", plain(*time)));
+            drawing.dot(place, MOMENTS[k % MOMENTS.len()]);
         }
         // Only who has several paths needs names for them.
         if paths.iter().filter(|other| other.agent == path.agent).count() > 1 {
             drawing.text(at(steps / 2), &path.name);
         }
     }
-    drawing.finish(if scenario.title.is_empty() { "paths" } else { &scenario.title })
+    drawing.name(Ink::WAY, "paths");
+    drawing.name(Ink::START, "where they begin");
+    for (k, time) in instants.iter().enumerate().take(MOMENTS.len()) {
+        drawing.name(MOMENTS[k], &format!("at {} s", plain(*time)));
+    }
 }
 
-/// The plane of place and speed: limit curve, feasible region, and profiles.
-pub fn phase(region: &Region, courses: &[Course], title: &str) -> String {
-    let length = region.optimum().length();
-    let at = |k: u32| length * f64::from(k) / f64::from(POINTS);
-    let curve =
-        |of: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> { (0..=POINTS).map(|k| (at(k), of(at(k)))).collect() };
-    let profile = |(k, course): (usize, &Course)| {
-        let time = |k: u32| course.motion(course.duration() * f64::from(k) / f64::from(POINTS));
-        let points = (0..=POINTS).map(time).map(|motion| (motion.distance, motion.speed));
-        (format!("profile {}", k + 1), points.collect())
+/// The map: the scene, the roadmap, and the rounded paths from where the walkers are; and where they are planned to be at some
+/// times, s.
+pub fn map(scenario: &Scenario, paths: &[PlannedPath], instants: &[f64]) -> Picture {
+    let mut drawing = plan::scene(scenario);
+    if let Some(terrain) = paths.iter().find_map(|path| path.terrain.as_ref()) {
+        let vertex = |k: u32| terrain.roadmap.vertices()[k as usize];
+        for &(a, b) in terrain.roadmap.edges() {
+            drawing.line(&[vertex(a), vertex(b)], Ink::ROADMAP);
+        }
+        drawing.name(Ink::ROADMAP, "roadmap");
+    }
+    draw_paths(&mut drawing, paths, instants);
+    Picture::plan(if scenario.title.is_empty() { "paths" } else { &scenario.title }, drawing)
+}
+
+/// A path without a scene, with the joints of its lines and arcs.
+pub fn map_of_shape(path: &PlannedPath, instants: &[f64], title: &str) -> Picture {
+    let line = &path.course.path;
+    let joints: Vec<Vec2> = line.joints().iter().map(|joint| line.at(*joint).position).collect();
+    let corners = line.pieces().iter().flat_map(|piece| [piece.start().position, piece.end().position]);
+    let around = Bounds::around(corners.chain(path.corners.iter().copied()));
+    let origin = Bounds { low: Vec2::zeros(), high: Vec2::zeros() };
+    let mut drawing = Drawing::new(around.unwrap_or(origin));
+    drawing.line(&path.corners, Ink::ROADMAP);
+    draw_paths(&mut drawing, std::slice::from_ref(path), instants);
+    for joint in joints {
+        drawing.dot(joint, Ink::JOINT);
+    }
+    drawing.name(Ink::JOINT, "joints of lines and arcs");
+    Picture::plan(title, drawing)
+}
+
+/// A profile as a figure shows it: its name, and rows of time, s, place, m, speed, m/s, and acceleration, m/s^2.
+pub type Curve = (String, Vec<[f64; 4]>);
+
+/// The profile of a course, with the acceleration along and across its path together.
+pub fn curve(name: String, course: &Course) -> Curve {
+    let time = |k: u32| course.duration() * f64::from(k) / f64::from(POINTS);
+    let row = |t: f64| {
+        let motion = course.motion(t);
+        let across = motion.speed * motion.speed * course.path.at(motion.distance).curvature;
+        let whole = (motion.acceleration * motion.acceleration + across * across).sqrt();
+        [t, motion.distance, motion.speed, whole]
     };
-    let mut curves: Vec<_> = courses.iter().enumerate().map(profile).collect();
-    curves.push(("fastest".to_owned(), curve(&|x| region.highest(x))));
-    curves.push(("slowest".to_owned(), curve(&|x| region.lowest(x))));
-    curves.push(("limit".to_owned(), curve(&|x| region.limit(x))));
-    chart(["s (m)", "ds/dt (m/s)"], curves, title)
+    (name, (0..=POINTS).map(time).map(row).collect())
 }
 
-/// Speed and acceleration over time.
-pub fn speed(courses: &[Course], title: &str) -> String {
-    let mut curves = Vec::new();
-    for (k, course) in courses.iter().enumerate() {
-        let time = |k: u32| course.duration() * f64::from(k) / f64::from(POINTS);
-        let all = || (0..=POINTS).map(time).map(|t| (t, course.motion(t)));
-        let of = |what: &str| if courses.len() == 1 { what.to_owned() } else { format!("{what} {}", k + 1) };
-        curves.push((of("speed"), all().map(|(t, motion)| (t, motion.speed)).collect()));
-        let whole = |motion: crate::route::profile::Motion| {
-            let curvature = course.path.at(motion.distance).curvature;
-            let across = motion.speed * motion.speed * curvature;
-            (motion.acceleration * motion.acceleration + across * across).sqrt()
-        };
-        curves.push((of("acceleration"), all().map(|(t, motion)| (t, whole(motion))).collect()));
+/// The plane of place and speed: limit curve, feasible region, and profiles (Li, Li, Ge 2019, Figures 3 and 5).
+pub fn phase(region: &Region, curves: &[Curve], title: &str) -> Picture {
+    const STYLES: [usize; 2] = [3, 4];
+    let length = region.optimum().length();
+    let places: Vec<f64> = (0..=POINTS).map(|k| length * f64::from(k) / f64::from(POINTS)).collect();
+    let bounded = |x: f64| if region.limit(x).is_finite() { region.limit(x) } else { region.highest(x) };
+    let drawn = curves.iter().flat_map(|(_, rows)| rows.iter().map(|row| row[2]));
+    let speeds = places.iter().map(|x| bounded(*x)).chain(drawn).chain([0.0]).collect::<Vec<_>>();
+    let mut frame =
+        Frame::new(["place (m)", "speed (m/s)"], Scale::between(0.0, length), Scale::linear(speeds));
+    let [fastest, limit] = STYLES;
+    let band: Vec<_> = places.iter().map(|x| (*x, region.lowest(*x), region.highest(*x))).collect();
+    frame.band(&band, fastest);
+    frame.line(places.iter().map(|x| (*x, region.highest(*x))), fastest);
+    frame.line(places.iter().map(|x| (*x, region.lowest(*x))), fastest);
+    frame.line(places.iter().map(|x| (*x, bounded(*x))), limit);
+    for (k, (name, rows)) in curves.iter().enumerate() {
+        frame.line(rows.iter().map(|row| (row[1], row[2])), profile_style(k));
+        frame.name(name, profile_style(k));
     }
-    chart(["t (s)", "speed (m/s), acceleration (m/s^2)"], curves, title)
+    frame.name("feasible region", fastest);
+    frame.name("limit of speed and turning", limit);
+    Picture::charts(title, vec![frame])
 }
 
-/// Named curves between axes that contain zero. What is infinite is left out.
-fn chart(axes: [&str; 2], curves: Vec<(String, Vec<(f64, f64)>)>, title: &str) -> String {
-    let all = || curves.iter().flat_map(|(_, points)| points.iter().copied());
-    let x = Scale::linear(all().map(|(x, _)| x).chain([0.0]));
-    let y = Scale::linear(all().map(|(_, y)| y).chain([0.0]));
-    let mut frame = Frame::new(axes, x, y);
-    for (k, (name, points)) in curves.into_iter().enumerate() {
-        frame.line(points.into_iter().filter(|(x, y)| x.is_finite() && y.is_finite()), k);
-        frame.name(&name, k);
+/// Speed and acceleration over time, one above the other (Figure 6).
+pub fn speed(curves: &[Curve], title: &str) -> Picture {
+    let chart = |axis: &str, column: usize| {
+        let all = || curves.iter().flat_map(|(_, rows)| rows);
+        let x = Scale::linear(all().map(|row| row[0]).chain([0.0]));
+        let y = Scale::linear(all().map(|row| row[column]).chain([0.0]));
+        let mut frame = Frame::new(["time (s)", axis], x, y);
+        for (k, (_, rows)) in curves.iter().enumerate() {
+            frame.line(rows.iter().map(|row| (row[0], row[column])), profile_style(k));
+        }
+        frame.low()
+    };
+    let mut below = chart("acceleration (m/s^2)", 3);
+    for (k, (name, _)) in curves.iter().enumerate() {
+        below.name(name, profile_style(k));
     }
-    picture(title, vec![frame])
+    Picture::charts(title, vec![chart("speed (m/s)", 2), below])
+}
+
+/// Profiles have other styles than the limits.
+fn profile_style(k: usize) -> usize {
+    [0, 1, 2, 5][k % 4]
 }

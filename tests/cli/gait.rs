@@ -73,7 +73,7 @@ fn steps_are_reported_written_and_drawn() {
     let said = place.call(&["gait", "steps", "circle.bvh", "--format", "svg", "-o", "steps.svg"]);
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""));
     let svg = std::fs::read_to_string(place.path("steps.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains("left (") && svg.contains(" m</text>"), "{svg}");
+    assert!(svg.starts_with("<svg") && svg.contains("left (") && svg.contains(">x (m)</text>"), "{svg}");
     // Other rules and other readings.
     for words in [&["--contact", "adaptive"][..], &["--unit", "1cm"], &["--source", "cmu-bvh", "--skip", "0"]]
     {

@@ -11,7 +11,7 @@ const SQUARE: &str = include_str!("../../models/square.csv");
 
 #[test]
 fn the_square_has_the_groups_of_figure_2() {
-    let said = at_root(&["infer", "models/square.csv", "--anonymous"]);
+    let said = at_root(&["infer", "models/square.csv", "--anonymous", "--format", "json"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     let json = said.json();
     let schema: Value = serde_json::from_str(include_str!("../../docs/schema/infer.schema.json")).unwrap();
@@ -28,7 +28,7 @@ fn the_square_has_the_groups_of_figure_2() {
 
 #[test]
 fn two_sensors_see_the_same_people() {
-    let json = at_root(&["infer", "models/square.jsonl"]).json();
+    let json = at_root(&["infer", "models/square.jsonl", "--format", "json"]).json();
     assert_eq!(json["traces"].as_array().unwrap().len(), 7);
     assert_eq!(json["groups"].as_array().unwrap().len(), 6);
 }
@@ -41,11 +41,15 @@ fn all_formats_and_standard_input() {
     assert_eq!(csv.lines().count(), SQUARE.lines().count());
     let fed = place.fed(&["infer", "-", "--format", "csv"], SQUARE);
     assert_eq!((fed.code, fed.out), (Some(0), csv));
-    let said = place.call(&["infer", "a.csv", "--format", "svg", "-o", "a.svg"]);
+    let text = place.call(&["infer", "a.csv"]).out;
+    for part in ["Traces and groups\n", "  traces ", "  groups of several members ", "  IDF1 "] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    let said = place.call(&["infer", "a.csv", "--format", "svg", "-o", "a.svg", "--width", "85mm"]);
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""));
     let svg = std::fs::read_to_string(place.path("a.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.matches("<polyline").count() == 7);
-    let part = place.call(&["infer", "a.csv", "--from", "4s", "--to", "8s"]).json();
+    assert!(svg.contains(" width=\"85mm\"") && svg.matches("<polyline").count() == 7);
+    let part = place.call(&["infer", "a.csv", "--from", "4s", "--to", "8s", "--format", "json"]).json();
     assert_eq!(part["intervals"].as_array().unwrap().len(), 1);
     assert_eq!(part["traces"][0]["points"].as_array().unwrap().len(), 11);
 }
@@ -54,7 +58,7 @@ fn all_formats_and_standard_input() {
 fn the_social_force_takes_a_kind_and_a_scene() {
     let schema: Value = serde_json::from_str(include_str!("../../docs/schema/infer.schema.json")).unwrap();
     let schema = jsonschema::validator_for(&schema).unwrap();
-    let (square, force) = (["infer", "models/square.csv"], ["--motion", "social-force"]);
+    let (square, force) = (["infer", "models/square.csv", "--format", "json"], ["--motion", "social-force"]);
     for (words, kind, scene) in [
         (&[] as &[&str], "smc1", Value::Null),
         (&["--kind", "helbing2000"], "helbing2000", Value::Null),
@@ -82,7 +86,7 @@ fn a_wall_keeps_people_on_their_side() {
     let table = "time,id,x,y\n0,1,0,0\n0.4,1,0.5,0\n1.6,2,2,0\n";
     let place = Place::new(&[("a.csv", table), ("scene.scn", SCENE)]);
     let traces = |words: &[&str]| {
-        let said = place.call(&[&["infer", "a.csv", "--anonymous"], words].concat());
+        let said = place.call(&[&["infer", "a.csv", "--anonymous", "--format", "json"], words].concat());
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{words:?}");
         said.json()["traces"].as_array().unwrap().len()
     };
@@ -90,7 +94,7 @@ fn a_wall_keeps_people_on_their_side() {
     assert_eq!(traces(&["--motion", "social-force"]), 1);
     assert_eq!(traces(&["--motion", "social-force", "--scene", "scene.scn"]), 2);
     assert_eq!(traces(&["--motion", "social-force", "--scene", "scene.scn", "--kind", "slim"]), 2);
-    let fed = place.fed(&["infer", "a.csv", "--motion", "social-force", "--scene", "-"], SCENE);
+    let fed = place.fed(&["infer", "a.csv", "--motion", "social-force", "--scene", "-", "--format", "json"], SCENE);
     assert_eq!((fed.code, fed.json()["parameters"]["scene"].as_str()), (Some(0), Some("<stdin>")));
 }
 
@@ -99,7 +103,7 @@ fn numbers_have_three_decimals() {
     let is_short = |text: &str| text.split_once('.').is_none_or(|(_, decimals)| decimals.len() <= 3);
     let csv = at_root(&["infer", "models/square.csv", "--format", "csv"]).out;
     assert!(csv.lines().skip(1).flat_map(|line| line.split(',')).all(is_short), "{csv}");
-    let json = at_root(&["infer", "models/square.csv"]).json();
+    let json = at_root(&["infer", "models/square.csv", "--format", "json"]).json();
     let mut all = vec![&json["intervals"], &json["traces"], &json["groups"]];
     let mut count = 0;
     while let Some(value) = all.pop() {
@@ -204,7 +208,7 @@ fn bad_input_is_refused() {
 fn every_track_of_the_hotel_is_one_trace() {
     let Some(data) = recordings() else { return };
     let file = data.join("seq_hotel/obsmat.txt");
-    let said = at_root(&["infer", file.to_str().unwrap(), "--anonymous"]);
+    let said = at_root(&["infer", file.to_str().unwrap(), "--anonymous", "--format", "json"]);
     let tracks = &said.json()["score"]["tracks"];
     assert_eq!((&tracks["unsplit"], &tracks["switches"]), (&390.into(), &0.into()));
 }

@@ -38,13 +38,32 @@ fn drawn_profiles_keep_limits_and_printed_ones_hardly_ever() {
     assert!(with("varied", "200").contains("200 of 200 profiles returned, 200 of them keep every limit"));
     assert!(with("uniform", "200").contains("200 of 200 profiles returned, 200 of them keep every limit"));
     let printed = with("printed", "10000");
-    let line = printed.lines().last().unwrap();
+    let line = printed.lines().find(|line| line.contains("returned")).unwrap();
     let numbers: Vec<f64> =
         line.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
     let [returned, all, legal] = numbers[..] else { panic!("{line}") };
+    assert!(printed.contains("\n  profile 1 ") && printed.contains("and 9990 more"), "{printed}");
     // 83 % never return, 66 % of the others break a limit, each to two points.
     assert!((100.0 * (1.0 - returned / all) - 83.0).abs() < 2.0, "{line}");
     assert!((100.0 * (1.0 - legal / returned) - 66.0).abs() < 2.0, "{line}");
+    // Of every run its fate; with four pieces or fewer none returns.
+    let written = |words: &[&str]| {
+        let by =
+            ["--shape", PAPER, "--speed", "10", "--acceleration", "2", "--profiles", "40", "--by", "printed"];
+        of_shape(&[&by, words].concat())
+    };
+    let json: serde_json::Value = serde_json::from_str(&written(&["--format", "json"])).unwrap();
+    let runs = json["paths"].as_array().unwrap();
+    assert_eq!(runs.len(), 40);
+    for run in runs {
+        let points = run["points"].as_array().map_or(0, Vec::len);
+        assert_eq!(run["returned"] == true, points > 3 && run["why"].is_null(), "{run}");
+    }
+    let csv = written(&["--format", "csv"]);
+    assert!(csv.starts_with("path,returned,breaks,t,s,v,a\nprofile 1,"), "{}", &csv[..80]);
+    assert_eq!(csv.matches(",false,").count(), runs.iter().filter(|run| run["returned"] == false).count());
+    assert!(written(&["--pieces", "4"]).contains("\n0 of 40 profiles returned"));
+    assert!(written(&["--format", "svg", "--figure", "phase"]).contains("breaks the limit"));
     let slow =
         ["--shape", PAPER, "--speed", "10", "--acceleration", "2", "--profiles", "2", "--duration", "40s"];
     assert!(of_shape(&slow).contains("durations 40.000000, 40.000000 s"));
@@ -77,7 +96,7 @@ fn paths_of_a_scenario_come_as_text_tables_and_pictures() {
         assert!((3..=11).contains(&knots.len()) && path["duration_s"].as_f64() >= path["optimal_s"].as_f64());
     }
     let map = said(&["--agent", "people[2]", "--format", "svg", "--at", "5s,10s"]);
-    assert!(map.contains(">5 s</text>") && map.contains(">10 s</text>"));
+    assert!(map.contains(">at 5 s</text>") && map.contains(">at 10 s</text>"));
     for figure in ["map", "phase", "speed"] {
         let svg = said(&["--agent", "people[1]", "--format", "svg", "--figure", figure]);
         assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{figure}");
@@ -132,7 +151,7 @@ fn wrong_calls_are_refused_with_a_hint() {
         (&["--shape", "L10", "--speed", "fast"], "must be a number of at least 0 in m/s"),
         (&["--shape", "L10", "--speed", "0"], "must be positive"),
         (&["--shape", "L1", "--speed", "9", "--start-speed", "5 m/s"], "from 0 to 1.26491"),
-        (&["--shape", "L10", "--format", "svg"], "a shape has no map"),
+        (&["--shape", "L10", "--format", "svg", "--width", "2mm"], "from 40mm to 1000mm"),
     ];
     for (words, said) in shaped {
         let found = Place::new(&[]).call(&[&["path"], words].concat());

@@ -133,7 +133,9 @@ fn pictures_show_walks_places_and_a_scale() {
     assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{}", said.err);
     let picture = std::fs::read_to_string(place.path("walks.svg")).unwrap();
     assert_eq!(picture.matches("<polyline").count(), 5 * 4, "5 trials of 4 legs");
-    for part in ["Hall &lt;1&gt;", ">shelf</text>", ">door</text>", "20 walks; cells of 0.1 m", " m</text>"] {
+    for part in
+        ["Hall &lt;1&gt;", ">shelf</text>", ">door</text>", "20 walks; cells of 0.1 m", ">y (m)</text>"]
+    {
         assert!(picture.contains(part), "{part}");
     }
     // Of the walk that most cells lie on, all trials pass some cell.
@@ -193,6 +195,38 @@ fn n_is_short_for_trials_of_simulate_too() {
     let words = |option| ["simulate", "hall.scn", option, "2", "--until", "1s", "--every", "30"];
     let (short, long) = (place.call(&words("-n")), place.call(&words("--trials")));
     assert_eq!((short.code, &short.out), (Some(0), &long.out));
+}
+
+#[test]
+fn a_gait_that_is_not_used_as_it_was_fitted_is_told() {
+    let learned = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/gaits/cmu.gait")).unwrap();
+    for (kind, wanted) in [
+        ("gait = as_published \"x.gait\"", "`x.gait` was not fitted as published"),
+        (
+            "gait = learned \"x.gait\"; search = grid_a_star()",
+            "usual length and duration of steps from `x.gait`",
+        ),
+        (
+            "search = grid_a_star(); gait = learned \"x.gait\"",
+            "usual length and duration of steps from `x.gait`",
+        ),
+    ] {
+        let place =
+            Place::new(&[("hall.scn", &HALL.replace("stepped { }", &format!("stepped {{ {kind} }}")))]);
+        place.write("x.gait", &learned);
+        let said = place.call(&["walk", "hall.scn", "-n", "2"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        assert!(said.err.contains("warning[W0723]") && said.err.contains(wanted), "{kind}\n{}", said.err);
+    }
+    // The published search needs no other word.
+    let with = |kind: &str| {
+        let place =
+            Place::new(&[("hall.scn", &HALL.replace("stepped { }", &format!("stepped {{ {kind} }}")))]);
+        place.write("x.gait", &learned);
+        place.call(&["walk", "hall.scn", "-n", "5", "--format", "json"]).out
+    };
+    let both = with("gait = learned \"x.gait\"; search = as_published()");
+    assert_eq!(with("gait = as_published \"x.gait\""), both);
 }
 
 #[test]

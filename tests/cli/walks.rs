@@ -40,6 +40,25 @@ fn two_sets_are_compared_as_text_json_and_points() {
     assert_eq!(json["all"]["energy"]["path_and_duration"]["p"], 0.001);
     assert!(json["all"]["duration_s"]["signed_rank"]["p"].as_f64().unwrap() < 1e-4);
     assert_eq!(json["legs"].as_array().unwrap().len(), 2);
+    // Several candidates: the nearer one, and both in one picture.
+    let beside = walks(24, 2.0, &["in", "out"]).replace(",in", "5,in").replace(",out", "5,out");
+    place.write("c.csv", beside.as_bytes());
+    let several = ["gait", "compare", "a.csv", "c.csv", "b.csv"];
+    let said = place.call(&several);
+    assert!(
+        said.out.contains("\nC is the nearest to A; ") && said.out.contains("  C less B"),
+        "{}",
+        said.out
+    );
+    let all = place.call(&[&several[..], &["--format", "json"]].concat()).json();
+    assert!(jsonschema::validator_for(&schema).unwrap().is_valid(&all), "{all:#}");
+    assert_eq!(all["rivals"][0]["candidates"], serde_json::json!([0, 1]));
+    assert!(all["rivals"][0]["walks"]["median_difference_m"].as_f64().unwrap() < 0.0);
+    let svg = place.call(&[&several[..], &["--format", "svg", "--width", "170mm"]].concat()).out;
+    assert!(svg.contains("(a) a: 24 walks, the base") && svg.contains("(c) b: 24 walks"), "{svg}");
+    let said = place.call(&[&several[..], &["--points", "points.csv"]].concat());
+    assert!(said.code == Some(2) && said.err.contains("`--points` takes one candidate"), "{}", said.err);
+    let said = place.call(&words);
     let points = std::fs::read_to_string(place.path("points.csv")).unwrap();
     assert!(points.starts_with("set,walk,leg,t,x,y,distance\nA,0,in,0,0,0,0\n"), "{}", &points[..80]);
     assert_eq!(points.lines().count(), 1 + 2 * 504);

@@ -1,6 +1,6 @@
 //! The options of `smc gait`.
 
-use crate::cli::values::TextFormat;
+use crate::cli::values::{Print, TextFormat};
 use crate::data::mocap::{Asf, Layout, Up, bvh_preset};
 use crate::gait::model::Residuals;
 use crate::gait::steps::Contact;
@@ -103,6 +103,9 @@ pub(in crate::cli) struct StepsCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = StepsFormat::Text)]
     pub(super) format: StepsFormat,
+    /// How wide a picture is.
+    #[command(flatten)]
+    pub(super) print: Print,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
@@ -211,17 +214,17 @@ pub(in crate::cli) struct ScoreCommand {
 /// `smc gait compare`
 #[derive(Args, Debug)]
 pub(in crate::cli) struct CompareCommand {
-    /// The first set, such as recorded walks: a CSV file with the columns `walk`, `t` (s), `x` and `y` (m), and perhaps
+    /// The base (A), such as recorded walks: a CSV file with the columns `walk`, `t` (s), `x` and `y` (m), and perhaps
     /// `leg`; `-` for standard input.
-    #[arg(value_name = "A.csv")]
-    pub(super) first: String,
-    /// The second set, such as simulated walks.
-    #[arg(value_name = "B.csv")]
-    pub(super) second: String,
+    #[arg(value_name = "BASE.csv")]
+    pub(super) base: String,
+    /// The sets that are compared with it (B, C, ...), such as simulated walks; at most eight.
+    #[arg(value_name = "CANDIDATE.csv", required = true, num_args = 1..=8)]
+    pub(super) candidates: Vec<String>,
     /// Walks with the same name belong together: also test whether they differ (Wilcoxon).
     #[arg(long)]
     pub(super) paired: bool,
-    /// Also write the distance of each point to the nearest one of the other set.
+    /// With one candidate: also write the distance of each point to the nearest one of the other set.
     #[arg(long, value_name = "FILE.csv")]
     pub(super) points: Option<PathBuf>,
     /// Seed of permutations, resamples and halves.
@@ -230,6 +233,12 @@ pub(in crate::cli) struct CompareCommand {
     /// Format of the comparison.
     #[arg(long, value_enum, default_value_t = WalksFormat::Text)]
     pub(super) format: WalksFormat,
+    /// How wide a picture is.
+    #[command(flatten)]
+    pub(super) print: Print,
+    /// A scenario whose barriers a picture shows.
+    #[arg(long, value_name = "MODEL.scn")]
+    pub(super) scene: Option<String>,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
@@ -242,6 +251,8 @@ pub(in crate::cli) enum WalksFormat {
     Text,
     /// One object; see docs/schema/walks.schema.json.
     Json,
+    /// All sets beside each other, each with its corridor of walks.
+    Svg,
 }
 
 /// One of some values by its name.

@@ -3,16 +3,19 @@
 use super::arguments::{CompareCommand, WalksFormat};
 use crate::base::visible::visible;
 use crate::cli::terminal::Colors;
+use crate::cli::values::Model;
 use crate::cli::{complaint, inputs, output};
 use crate::data::tracks::LineError;
 use crate::data::walks::{Walk, read_walks};
-use crate::gait::compare::{compare, has_pairs};
+use crate::gait::compare::{Comparisons, compare, has_pairs};
+use crate::model::Scenario;
 use crate::report::ExitCode as Exit;
 use crate::report::walks::{self, WalkSet};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::decode;
 use crate::syntax::source::{Source, SourceId, Span};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Errors of a file that are shown.
 pub(super) const SHOWN: usize = 5;
@@ -24,51 +27,74 @@ const HINT: &str = "write a table with the columns `walk,t,x,y`, perhaps `leg`: 
 /// Runs the command.
 pub(super) fn run(arguments: &CompareCommand, colors: Colors) -> Exit {
     let mut sources = Vec::new();
-    let done = answer(arguments, &mut sources);
+    let done = answer(arguments, &mut sources, colors);
     complaint::end(done.map(|()| Exit::Success), &sources, colors)
 }
 
-fn answer(arguments: &CompareCommand, sources: &mut Vec<Source>) -> Result<(), Vec<Diagnostic>> {
-    let files = [&arguments.first, &arguments.second];
-    if files.iter().all(|file| *file == "-") {
+fn answer(
+    arguments: &CompareCommand,
+    sources: &mut Vec<Source>,
+    colors: Colors,
+) -> Result<(), Vec<Diagnostic>> {
+    let files: Vec<&String> = std::iter::once(&arguments.base).chain(&arguments.candidates).collect();
+    if files.iter().filter(|file| **file == "-").count() > 1 {
         return Err(complaint::input("standard input can be read only once").into());
     }
-    let paths = files.map(|file| PathBuf::from(if file == "-" { inputs::STDIN } else { file }));
+    let paths = files.iter().map(|file| PathBuf::from(if *file == "-" { inputs::STDIN } else { file }));
+    let paths: Vec<PathBuf> = paths.collect();
     for written in [&arguments.output, &arguments.points] {
         output::guard(written.as_deref(), &paths)?;
     }
-    let first = read(&arguments.first, sources);
-    let second = read(&arguments.second, sources);
-    let (first, second) = match (first, second) {
-        (Ok(first), Ok(second)) => (first, second),
-        (first, second) => {
-            return Err([first.err(), second.err()].into_iter().flatten().flatten().collect());
-        }
-    };
+    if arguments.points.is_some() && arguments.candidates.len() > 1 {
+        let hint = "compare one candidate, or leave out `--points`";
+        return Err(complaint::argument("`--points` takes one candidate", hint).into());
+    }
+    let read: Vec<_> = files.iter().map(|file| read(file, sources)).collect();
+    if read.iter().any(Result::is_err) {
+        return Err(read.into_iter().filter_map(Result::err).flatten().collect());
+    }
+    let all: Vec<Vec<Walk>> = read.into_iter().filter_map(Result::ok).collect();
     // The first walk shows whether a table has legs.
-    if first[0].leg.is_some() != second[0].leg.is_some() {
-        let without = usize::from(first[0].leg.is_some());
-        let title = format!("`{}` has no column `leg`, but the other table has", sources[without].name);
-        let hint = "add the column, or remove it from the other table";
+    let has_legs = |walks: &[Walk]| walks[0].leg.is_some();
+    if let Some(without) = all.iter().position(|walks| !has_legs(walks))
+        && all.iter().any(|walks| has_legs(walks))
+    {
+        let title = format!("`{}` has no column `leg`, but another table has", sources[without].name);
+        let hint = "add the column, or remove it from the other tables";
         return Err(error!(E0708, header(&sources[without]), "{title}"; hint: "{hint}").into());
     }
-    if arguments.paired && !has_pairs(&first, &second) {
+    let (base, candidates) = (&all[0], &all[1..]);
+    if arguments.paired && candidates.iter().any(|walks| !has_pairs(base, walks)) {
         let hint = "give walks that belong together one name in both tables, or remove `--paired`";
         let title = "`--paired` finds no walk with one name in both tables";
         return Err(complaint::argument(title, hint).into());
     }
-    let found = compare(&first, &second, arguments.paired, arguments.seed);
-    let sets = [(&arguments.first, &first), (&arguments.second, &second)]
-        .map(|(file, walks)| WalkSet { file: inputs::shown(file), walks });
+    let sets: Vec<WalkSet<'_>> =
+        files.iter().zip(&all).map(|(file, walks)| WalkSet { file: inputs::shown(file), walks }).collect();
+    if arguments.format == WalksFormat::Svg {
+        let scenario = scene(arguments, colors)?;
+        let picture = walks::draw(scenario.as_deref(), &sets);
+        return Ok(output::put(arguments.output.as_deref(), &arguments.print.svg(&picture))?);
+    }
+    let found: Vec<Comparisons> =
+        candidates.iter().map(|walks| compare(base, walks, arguments.paired, arguments.seed)).collect();
     if let Some(path) = &arguments.points {
-        output::write(path, |out| walks::write_points(out, &found.whole, sets))
+        output::write(path, |out| walks::write_points(out, &found[0].whole, [sets[0], sets[1]]))
             .map_err(|error| complaint::unwritten(path, &error))?;
     }
     let text = match arguments.format {
-        WalksFormat::Text => visible(&walks::to_text(&found, sets)).into_owned(),
-        WalksFormat::Json => walks::to_json(&found, sets, arguments.seed),
+        WalksFormat::Json => walks::to_json(&found, &sets, arguments.seed),
+        _ => visible(&walks::to_text(&found, &sets)).into_owned(),
     };
     Ok(output::put(arguments.output.as_deref(), &text)?)
+}
+
+/// The scenario whose barriers a picture shows.
+fn scene(arguments: &CompareCommand, colors: Colors) -> Result<Option<Arc<Scenario>>, Vec<Diagnostic>> {
+    let Some(scene) = &arguments.scene else { return Ok(None) };
+    let model = Model { scenario: scene.clone(), ..Model::default() };
+    let (study, _) = inputs::load_or_tell(&model, &[], colors).ok_or_else(Vec::new)?;
+    Ok(study.worlds.get(study.base).map(|world| Arc::clone(&world.scenario)))
 }
 
 /// The walks of a file. Its text is kept for the places of errors.

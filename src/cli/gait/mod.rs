@@ -56,7 +56,7 @@ fn steps(command: &StepsCommand, colors: Colors) -> Result<(), Stop> {
     let text = match command.format {
         StepsFormat::Text => visible(&report(&takes.cuts)).into_owned(),
         StepsFormat::Csv => output::table(|out| write_steps(out, &takes.steps()))?,
-        StepsFormat::Svg => draw(&takes.steps()),
+        StepsFormat::Svg => command.print.svg(&draw(&takes.steps())),
     };
     Ok(output::put(command.output.as_deref(), &text)?)
 }

@@ -1,6 +1,6 @@
 //! The options of `smc infer`.
 
-use crate::cli::values::{parse_above_zero, parse_moment, parse_rate, parse_velocity};
+use crate::cli::values::{Print, parse_above_zero, parse_moment, parse_rate, parse_velocity};
 use crate::data::tracks::{Format, Velocity};
 use crate::perception::Padding;
 use clap::{Args, ValueEnum};
@@ -66,8 +66,11 @@ pub(in crate::cli) struct InferCommand {
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
     /// Format of the output.
-    #[arg(long, value_enum, default_value_t = InferFormat::Json)]
+    #[arg(long, value_enum, default_value_t = InferFormat::Text)]
     pub(super) format: InferFormat,
+    /// How wide a picture is.
+    #[command(flatten)]
+    pub(super) print: Print,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
@@ -90,6 +93,8 @@ pub(super) enum MotionModel {
 /// Formats of `smc infer`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum InferFormat {
+    /// For people: counts and scores.
+    Text,
     /// One object; see docs/schema/infer.schema.json.
     Json,
     /// One row for each observation: `time,trace,group,x,y,vx,vy,id`.

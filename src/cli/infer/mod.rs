@@ -11,10 +11,11 @@ use super::output;
 use super::page;
 use super::terminal::Colors;
 use crate::base::random::TrialKey;
+use crate::base::visible::visible;
 use crate::data::tracks::{Batch, Format, LineError, Reading, Velocity, read_groups};
 use crate::perception::{Clustering, Inferring, Tracking, infer};
 use crate::report::ExitCode as Exit;
-use crate::report::infer::{InferredFile, to_csv, to_json, to_page, to_svg};
+use crate::report::infer::{InferredFile, to_csv, to_json, to_page, to_svg, to_text};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use arguments::InferFormat;
@@ -98,7 +99,8 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
     let text = match arguments.format {
         InferFormat::Json => to_json(&report),
         InferFormat::Csv => to_csv(&inference),
-        InferFormat::Svg => to_svg(&report),
+        InferFormat::Text => visible(&to_text(&report)).into_owned(),
+        InferFormat::Svg => arguments.print.svg(&to_svg(&report)),
     };
     output::put(arguments.output.as_deref(), &text)?;
     let Some(path) = &arguments.report else { return Ok(Exit::Success) };

@@ -1,6 +1,6 @@
 //! The options of `smc path`.
 
-use crate::cli::values::{Limit, parse_moment, parse_within};
+use crate::cli::values::{Limit, Print, parse_moment, parse_within};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -36,6 +36,9 @@ pub(in crate::cli) struct PathCommand {
     /// What an SVG picture shows.
     #[arg(long, value_enum, default_value_t = Figure::Map)]
     pub(in crate::cli) figure: Figure,
+    /// How wide it is.
+    #[command(flatten)]
+    pub(in crate::cli) print: Print,
     /// Also draw on the map where the walkers are planned to be at these times: `3s,6s`.
     #[arg(long, value_name = "TIMES", value_delimiter = ',', value_parser = parse_moment)]
     pub(in crate::cli) at: Vec<f64>,
@@ -66,9 +69,10 @@ pub(in crate::cli) struct PathCommand {
     /// Speed at its end.
     #[arg(long, default_value = "0m/s", value_name = "SPEED", value_parser = parse_speed)]
     pub(in crate::cli) end_speed: f64,
-    /// In how many pieces, 2 to 64, the acceleration of a drawn profile is constant.
-    #[arg(long, default_value_t = 8, value_name = "N", value_parser = |text: &str| parse_within(text, 2, 64))]
-    pub(in crate::cli) pieces: u32,
+    /// In how many pieces, 2 to 64, the acceleration of a drawn profile is constant (m0); else 4.2 for 10 m, or with
+    /// `--by printed` 2 to 10 drawn anew for each.
+    #[arg(long, value_name = "N", value_parser = |text: &str| parse_within(text, 2, 64))]
+    pub(in crate::cli) pieces: Option<u32>,
     /// Number of profiles that are drawn along a shape, at most 10000.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = |text: &str| parse_within(text, 0, 10_000))]
     pub(in crate::cli) profiles: u32,

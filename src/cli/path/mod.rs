@@ -20,6 +20,7 @@ use crate::report::ExitCode as Exit;
 use crate::report::number::counted;
 use crate::report::paths::{self, PlannedPath};
 use crate::route::Ways;
+use crate::route::path::Piece;
 use crate::route::planner::{Speeds, Wish};
 use crate::route::profile::{Limits, region};
 use crate::syntax::diagnostic::Diagnostic;
@@ -121,19 +122,22 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         (PathFormat::Json, _) => Ok(paths::to_json(&found)),
         (PathFormat::Csv, _) => Ok(table(&found, arguments.dt)?),
         (PathFormat::Text, _) => Ok(told(&found)),
-        (PathFormat::Svg, Figure::Map) => Ok(paths::map(&scenario, &found, &arguments.at)),
         (PathFormat::Svg, figure) => {
-            let first = found.first().ok_or_else(nothing)?;
-            let course = &first.course;
-            if figure == Figure::Speed {
-                return Ok(paths::speed(std::slice::from_ref(course), title));
-            }
-            let limits = run_limits(run.state(), &scenario, &first.agent);
-            let region = limits
-                .and_then(|limits| region(&course.stretches(), limits, course.motion(0.0).speed, 0.0).ok());
-            region
-                .map(|region| paths::phase(&region, std::slice::from_ref(course), title))
-                .ok_or_else(nothing)
+            let picture = match (figure, found.first()) {
+                (Figure::Map, _) => paths::map(&scenario, &found, &arguments.at),
+                (_, None) => return Err(nothing()),
+                (Figure::Speed, Some(first)) => {
+                    paths::speed(&[paths::curve(first.agent.clone(), &first.course)], title)
+                }
+                (Figure::Phase, Some(first)) => {
+                    let course = &first.course;
+                    let limits = run_limits(run.state(), &scenario, &first.agent).ok_or_else(nothing)?;
+                    let region = region(&course.stretches(), limits, course.motion(0.0).speed, 0.0);
+                    let curve = paths::curve(first.agent.clone(), course);
+                    paths::phase(&region.map_err(|_| nothing())?, &[curve], title)
+                }
+            };
+            Ok(arguments.print.svg(&picture))
         }
     }
 }
@@ -162,10 +166,14 @@ fn told(paths: &[PlannedPath]) -> String {
     let mut out = String::new();
     for PlannedPath { agent, name, course, .. } in paths {
         let (length, fastest, walked) = (course.path.length(), course.optimum.duration(), course.duration());
-        let pieces = counted(course.path.pieces().len() as u64, "piece");
+        let of = |word, is: fn(&Piece) -> bool| {
+            counted(course.path.pieces().iter().filter(|piece| is(piece)).count() as u64, word)
+        };
+        let lines = of("line", |piece| matches!(piece, Piece::Line { .. }));
+        let arcs = of("arc", |piece| matches!(piece, Piece::Arc { .. }));
         let _ = writeln!(
             out,
-            "{agent:<14} {name:<16} {length:.2} m, {walked:.2} s (at least {fastest:.2} s), {pieces}"
+            "{agent:<14} {name:<16} {length:.2} m, {walked:.2} s (at least {fastest:.2} s), {lines}, {arcs}"
         );
     }
     out

@@ -6,11 +6,12 @@ use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::cli::complaint::argument;
 use crate::cli::inputs;
 use crate::model::Sight;
-use crate::report::paths::{self, PlannedPath};
+use crate::report::paths::{self, PlannedPath, PrintedRun};
 use crate::route::path::{Path, PathShape, ShapeError, round};
 use crate::route::planner::{Course, stretches};
 use crate::route::profile::{
-    Infeasible, Law, Limits, Printed, Region, Stretch, Varied, Variety, optimal, printed, region, varied,
+    Infeasible, Law, Limits, Optimum, Printed, Region, Stretch, Varied, Variety, optimal, printed, region,
+    varied,
 };
 use crate::syntax::diagnostic::Diagnostic;
 use std::fmt::Write as _;
@@ -19,6 +20,10 @@ use std::fmt::Write as _;
 const FLOOR: f64 = 0.1;
 /// Draws of one profile.
 const DRAWS: u32 = 1 << 10;
+/// Most runs of the printed algorithm that are told one by one.
+const SHOWN: usize = 10;
+/// Pieces of constant acceleration for each metre of recorded walks (`docs/planning.md`).
+const PER_METRE: f64 = 0.42;
 
 /// No profile keeps the limits.
 fn wrong(error: Infeasible) -> Diagnostic {
@@ -27,20 +32,20 @@ fn wrong(error: Infeasible) -> Diagnostic {
 
 /// A path by its shape or its way points.
 pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
-    let (stretches, path) = match (&arguments.shape, &arguments.waypoints) {
+    let (stretches, path, corners) = match (&arguments.shape, &arguments.waypoints) {
         (Some(text), _) => {
             let shape: PathShape = text.parse().map_err(|error: ShapeError| {
                 let title = format!("`--shape` cannot be read: {error}");
                 argument(title, "write for example `--shape 'L10 A45/7 L10'`")
             })?;
-            (shape.stretches(), shape.path())
+            (shape.stretches(), shape.path(), Vec::new())
         }
         (None, Some(file)) => {
             let corners = way_points(file)?;
             let path = round(&corners, arguments.corner, 0.0, &Sight::default());
-            (stretches(&path), path)
+            (stretches(&path), path, corners)
         }
-        (None, None) => (Vec::new(), Path::empty(Vec2::zeros())),
+        (None, None) => (Vec::new(), Path::empty(Vec2::zeros()), Vec::new()),
     };
     let limits = Limits {
         speed: arguments.speed,
@@ -58,28 +63,47 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
         .filter_map(Clone::clone)
         .map(|varied| Course { path: path.clone(), optimum: optimum.clone(), varied: Some(varied) })
         .collect();
-    let title = arguments.shape.clone().unwrap_or_default();
+    let runs = runs(arguments, &stretches, limits).map_err(wrong)?;
+    let title = match (&arguments.shape, &arguments.waypoints) {
+        (Some(shape), _) => shape.clone(),
+        _ => "path through way points".to_owned(),
+    };
+    let curves = || {
+        let drawn = courses.iter().zip(1..).map(|(course, k)| paths::curve(format!("profile {k}"), course));
+        let drawn: Vec<_> = drawn.chain(paths::printed_curves(&runs)).collect();
+        let is_alone = drawn.is_empty() && arguments.by != SpeedLaw::Printed;
+        let fastest = Course { path: path.clone(), optimum: optimum.clone(), varied: None };
+        if is_alone { vec![paths::curve("fastest".to_owned(), &fastest)] } else { drawn }
+    };
+    let named = |(k, course): (usize, &Course)| PlannedPath {
+        agent: "shape".to_owned(),
+        name: format!("profile {}", k + 1),
+        terrain: None,
+        corners: corners.clone(),
+        course: course.clone(),
+    };
+    let alone = || Course { path: path.clone(), optimum: optimum.clone(), varied: None };
     match (arguments.format, arguments.figure) {
-        (PathFormat::Text, _) => tell_shape(arguments, &stretches, limits, &courses),
-        (PathFormat::Svg, Figure::Phase) => {
-            let region: Region = region(&stretches, limits, ends.0, ends.1).map_err(wrong)?;
-            Ok(paths::phase(&region, &courses, &title))
-        }
-        (PathFormat::Svg, Figure::Speed) => Ok(paths::speed(&courses, &title)),
-        (PathFormat::Svg, Figure::Map) => {
-            Err(argument("a shape has no map", "write `--figure phase` or `--figure speed`"))
-        }
-        (format, _) => {
-            let alone = Course { path, optimum, varied: None };
-            let all = if courses.is_empty() { vec![alone] } else { courses };
-            let named = |(k, course)| PlannedPath {
-                agent: "shape".to_owned(),
-                name: format!("profile {}", k + 1),
-                terrain: None,
-                corners: Vec::new(),
-                course,
+        (PathFormat::Text, _) => tell_shape(arguments, &optimum, limits, &courses, &runs),
+        (PathFormat::Svg, figure) => {
+            let picture = match figure {
+                Figure::Phase => {
+                    let region: Region = region(&stretches, limits, ends.0, ends.1).map_err(wrong)?;
+                    paths::phase(&region, &curves(), &title)
+                }
+                Figure::Speed => paths::speed(&curves(), &title),
+                Figure::Map => {
+                    let first = courses.first().cloned().unwrap_or_else(alone);
+                    paths::map_of_shape(&named((0, &first)), &arguments.at, &title)
+                }
             };
-            let found: Vec<PlannedPath> = all.into_iter().enumerate().map(named).collect();
+            Ok(arguments.print.svg(&picture))
+        }
+        (PathFormat::Json, _) if arguments.by == SpeedLaw::Printed => Ok(paths::printed_to_json(&runs)),
+        (PathFormat::Csv, _) if arguments.by == SpeedLaw::Printed => Ok(paths::printed_to_csv(&runs)),
+        (format, _) => {
+            let all = if courses.is_empty() { vec![alone()] } else { courses };
+            let found: Vec<PlannedPath> = all.iter().enumerate().map(named).collect();
             Ok(if format == PathFormat::Json {
                 paths::to_json(&found)
             } else {
@@ -87,6 +111,23 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
             })
         }
     }
+}
+
+/// The runs of Algorithm 1 as printed, if they are asked for.
+fn runs(
+    arguments: &PathCommand,
+    stretches: &[Stretch],
+    limits: Limits,
+) -> Result<Vec<PrintedRun>, Infeasible> {
+    let count = if arguments.by == SpeedLaw::Printed { arguments.profiles } else { 0 };
+    let stream = stream(arguments);
+    let run = |number: u32| {
+        let draw = |k: u32| stream.uniform(number * DRAWS + k % DRAWS);
+        let pieces = arguments.pieces.map(|pieces| pieces as usize);
+        let run = printed(stretches, limits, arguments.start_speed, arguments.end_speed, pieces, draw)?;
+        Ok(PrintedRun { name: format!("profile {}", number + 1), run })
+    };
+    (0..count).map(run).collect()
 }
 
 fn stream(arguments: &PathCommand) -> Stream {
@@ -105,7 +146,9 @@ fn profile(
         SpeedLaw::Uniform => Law::Uniform,
         SpeedLaw::Varied => Law::Preferred { speed: 0.85 * limits.speed, spread: 0.15 },
     };
-    let variety = Variety { pieces: arguments.pieces as usize, floor: FLOOR, law };
+    let length: f64 = stretches.iter().map(|stretch| stretch.length).sum();
+    let pieces = arguments.pieces.map_or((PER_METRE * length).round().clamp(2.0, 64.0), f64::from);
+    let variety = Variety { pieces: pieces as usize, floor: FLOOR, law };
     let stream = stream(arguments);
     let draw = |knot: u32| stream.uniform_pair(number * DRAWS + knot % DRAWS);
     let found = varied(stretches, limits, arguments.start_speed, arguments.end_speed, &variety, draw)?;
@@ -115,30 +158,35 @@ fn profile(
 /// The fastest time with all its digits, the speeds at the joints, and how many profiles came about and are legal.
 fn tell_shape(
     arguments: &PathCommand,
-    stretches: &[Stretch],
+    optimum: &Optimum,
     limits: Limits,
     courses: &[Course],
+    runs: &[PrintedRun],
 ) -> Result<String, Diagnostic> {
-    let optimum = optimal(stretches, limits, arguments.start_speed, arguments.end_speed).map_err(wrong)?;
     let speeds: Vec<String> = optimum.node_speeds().map(|speed| format!("{speed:.6}")).collect();
     let mut out = format!("optimal_s {:.17}\n", optimum.duration());
     let _ = writeln!(out, "length {:.6} m\nspeeds at the joints {} m/s", optimum.length(), speeds.join(", "));
     if arguments.by == SpeedLaw::Printed {
-        let stream = stream(arguments);
-        let (mut returned, mut legal) = (0, 0);
-        for number in 0..arguments.profiles {
-            let draw = |k: u32| stream.uniform(number * DRAWS + k % DRAWS);
-            let found = printed(stretches, limits, arguments.start_speed, arguments.end_speed, draw);
-            if let Printed::Profile(profile) = found.map_err(wrong)? {
-                returned += 1;
-                legal += u32::from(!profile.violations().any());
-            }
+        let profiles = runs.iter().filter_map(|one| match &one.run {
+            Printed::Profile(profile) => Some(profile.violations().any()),
+            Printed::NeverReturns(_) => None,
+        });
+        let (legal, broken): (Vec<bool>, Vec<bool>) = profiles.partition(|breaks| !breaks);
+        let (legal, returned) = (legal.len(), legal.len() + broken.len());
+        let _ =
+            writeln!(out, "{returned} of {} profiles returned, {legal} of them keep every limit", runs.len());
+        for PrintedRun { name, run } in runs.iter().take(SHOWN) {
+            let _ = match run {
+                Printed::NeverReturns(why) => writeln!(out, "  {name:<12} never returns: {}", why.phrase()),
+                Printed::Profile(profile) if profile.violations().any() => {
+                    writeln!(out, "  {name:<12} {}", profile.violations().names().join(", "))
+                }
+                Printed::Profile(profile) => writeln!(out, "  {name:<12} legal, {:.2} s", profile.duration()),
+            };
         }
-        let _ = writeln!(
-            out,
-            "{returned} of {} profiles returned, {legal} of them keep every limit",
-            arguments.profiles
-        );
+        if runs.len() > SHOWN {
+            let _ = writeln!(out, "  and {} more: see `--format csv`", runs.len() - SHOWN);
+        }
     } else if !courses.is_empty() {
         let legal = courses.iter().filter(|course| course.is_legal(limits)).count();
         let times: Vec<String> =

@@ -1,5 +1,6 @@
 //! `smc plot`: a figure of results as SVG.
 
+use super::values::Print;
 use super::{complaint, inputs, output};
 use crate::report::figure::{Figure, draw};
 use crate::syntax::codes::Code;
@@ -21,9 +22,9 @@ pub(super) fn run(command: &PlotCommand) -> Result<(), Diagnostic> {
         let hint = "make the file with `smc check … --format json=results.json`";
         wrong(format!("it is no JSON ({error})"), hint.to_owned())
     })?;
-    let svg = draw(command.figure, &file, command.only.as_deref())
+    let picture = draw(command.figure, &file, command.only.as_deref())
         .map_err(|flaw| wrong(flaw.message, flaw.hint))?;
-    output::put(command.output.as_deref(), &svg)
+    output::put(command.output.as_deref(), &command.print.svg(&picture))
 }
 
 // The arguments of `smc plot`.
@@ -39,6 +40,9 @@ pub(in crate::cli) struct PlotCommand {
     /// Of several queries that could be drawn this one: the name of its property, or its number in writing order.
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
+    /// How wide it is.
+    #[command(flatten)]
+    print: Print,
     /// The figure; standard output by default.
     #[arg(short, long, value_name = "FILE.svg")]
     output: Option<PathBuf>,

@@ -1,6 +1,8 @@
 //! The options of `smc monitor`, `smc evaluate` and `smc fit`.
 
-use crate::cli::values::{Cores, Model, TextFormat, parse_count, parse_duration, parse_moment, parse_share};
+use crate::cli::values::{
+    Cores, Model, Print, TextFormat, parse_count, parse_duration, parse_moment, parse_share,
+};
 use crate::replay::{Beyond, Whose};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -98,6 +100,9 @@ pub(in crate::cli) struct EvaluateCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = EvaluateFormat::Text)]
     pub(super) format: EvaluateFormat,
+    /// How wide a picture is.
+    #[command(flatten)]
+    pub(super) print: Print,
 }
 
 /// `smc calibrate`

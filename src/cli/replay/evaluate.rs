@@ -95,7 +95,8 @@ fn text(arguments: &EvaluateCommand, call: &Call) -> Result<String, Vec<Diagnost
         EvaluateFormat::Text => Ok(to_text(&evaluated)),
         EvaluateFormat::Json => Ok(to_json(&evaluated)),
         EvaluateFormat::Svg => {
-            Ok(to_svg(&evaluated).map_err(|flaw| complaint::argument(flaw.message, flaw.hint))?)
+            let picture = to_svg(&evaluated).map_err(|flaw| complaint::argument(flaw.message, flaw.hint))?;
+            Ok(arguments.print.svg(&picture))
         }
         EvaluateFormat::Csv => Ok(output::table(|out| write_csv(out, &evaluated))?),
     }

@@ -4,7 +4,7 @@ mod trials;
 
 use super::page::Trials;
 use super::terminal::{Colors, warn};
-use super::values::{Cores, Limit, Model, parse_rate, parse_trials, threads};
+use super::values::{Cores, Limit, Model, Print, parse_rate, parse_trials, threads};
 use super::{complaint, inputs, output, page};
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
@@ -178,7 +178,7 @@ fn write(arguments: &WalkCommand, scenario: &Scenario, walked: &Walked) -> Resul
         WalkFormat::Text => visible(&walked::to_text(walked)).into_owned(),
         WalkFormat::Json => walked::to_json(walked),
         WalkFormat::Csv => output::table(|out| walked::write_csv(out, walked))?,
-        WalkFormat::Svg => walked::draw(scenario, walked),
+        WalkFormat::Svg => arguments.print.svg(&walked::draw(scenario, walked)),
         WalkFormat::Traces => output::table(|out| {
             let left_out = walked::write_traces(out, walked, arguments.fps)?;
             if left_out > 0 {
@@ -216,6 +216,9 @@ pub(in crate::cli) struct WalkCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = WalkFormat::Text)]
     pub(in crate::cli) format: WalkFormat,
+    /// How wide a picture is.
+    #[command(flatten)]
+    pub(in crate::cli) print: Print,
     /// Rows of a trace for each second.
     #[arg(long, default_value = "120", value_name = "RATE", value_parser = parse_rate)]
     pub(in crate::cli) fps: f64,

@@ -7,12 +7,15 @@ use crate::compile::lower::call_arguments::{self, Argument, call, word};
 use crate::model::{GaitRule, SearchRule};
 use crate::syntax::ast::{Field, ScenarioFile, Value};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
 use std::sync::Arc;
 
 /// Ways of choosing steps.
-const SEARCHES: [&str; 3] = ["guided", "hybrid_a_star", "as_published"];
+const SEARCHES: [&str; 4] = ["guided", "hybrid_a_star", "grid_a_star", "as_published"];
 /// Most steps that are tried after one.
 const MOST: f64 = 1000.0;
+/// As the file of a gait says that it was fitted as published.
+const PUBLISHED: &str = "\"as_published\":true";
 const GUIDED: [Argument; 1] = [Argument::count("candidates", 1.0, MOST)];
 const HYBRID: [Argument; 3] = [
     Argument { name: "cell", dimension: Dimension::LENGTH, range: (0.02, 1.0), positive: true, whole: false },
@@ -46,28 +49,47 @@ pub(crate) fn stepping(
 ) -> Lowered<()> {
     if field.name.name == "search" {
         kind.search = search(context, &field.value, locals)?;
+        warn_of_unused(context, field, kind);
         return Ok(());
     }
     kind.gait = match &field.value {
-        Value::Learned { file, .. } => match context.tracks.gaits.get(&file.value) {
-            Some(text) => GaitRule::Learned { file: file.value.clone(), text: Arc::clone(text) },
-            None => return Err(Reported),
-        },
+        Value::Learned { file, as_published, span } => {
+            let text = Arc::clone(context.tracks.gaits.get(&file.value).ok_or(Reported)?);
+            if *as_published {
+                kind.search = SearchRule::AsPublished;
+            }
+            if *as_published && !text.contains(PUBLISHED) {
+                let said = format!("`{}` was not fitted as published", file.value);
+                let hint = "fit it anew: `smc gait fit takes.csv --as-published -o walkers.gait`";
+                context.note(Diagnostic::warning(Code::W0723, *span, said).hint(hint));
+            }
+            GaitRule::Learned { file: file.value.clone(), text }
+        }
         value if word(value) == Some("synthetic") => GaitRule::Synthetic,
         value => {
-            let said = "`gait` must be `synthetic`, or `learned` with a file";
+            let said = "`gait` must be `synthetic`, or `learned` or `as_published` with a file";
             let error = error!(E0305, value.span(), "{said}");
             return context
                 .report(error.hint("write `gait = synthetic` or `gait = learned \"walkers.gait\"`"));
         }
     };
+    warn_of_unused(context, field, kind);
     Ok(())
 }
 
-/// `guided(…)`, `hybrid_a_star(…)` or `as_published()`.
+/// Of a gait whose steps no search draws.
+fn warn_of_unused(context: &mut Context<'_>, field: &Field, kind: &Kind) {
+    if let (GaitRule::Learned { file, .. }, SearchRule::GridAStar) = (&kind.gait, kind.search) {
+        let said = format!("`grid_a_star` takes only the usual length and duration of steps from `{file}`");
+        let warning = Diagnostic::warning(Code::W0723, field.value.span(), said);
+        context.note(warning.hint("remove `gait`, or write `search = hybrid_a_star()`"));
+    }
+}
+
+/// `guided(…)`, `hybrid_a_star(…)`, `grid_a_star()` or `as_published()`.
 fn search(context: &mut Context<'_>, value: &Value, locals: &Locals) -> Lowered<SearchRule> {
     let Some((name, arguments)) = call(value) else {
-        let said = "expected `guided(…)`, `hybrid_a_star(…)` or `as_published()`";
+        let said = "expected `guided(…)`, `hybrid_a_star(…)`, `grid_a_star()` or `as_published()`";
         return context.report(error!(E0305, value.span(), "{said}";
                 hint: "write for example `search = guided(candidates = 24)`"));
     };
@@ -86,8 +108,11 @@ fn search(context: &mut Context<'_>, value: &Value, locals: &Locals) -> Lowered<
                 successors: successors.unwrap_or(10.0) as u32,
             })
         }
-        "as_published" => call_arguments::numbers_among::<0>(context, name, arguments, &[], &[], locals)
-            .map(|_| SearchRule::AsPublished),
+        "grid_a_star" | "as_published" => {
+            let _: [_; 0] = call_arguments::numbers_among(context, name, arguments, &[], &[], locals)?;
+            let is_grid = name.name == "grid_a_star";
+            Ok(if is_grid { SearchRule::GridAStar } else { SearchRule::AsPublished })
+        }
         _ => context.report(unknown("search", &name.name, name.span, Code::E0208, SEARCHES.into_iter())),
     }
 }

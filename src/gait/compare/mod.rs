@@ -11,7 +11,7 @@ mod tests;
 use crate::data::walks::Walk;
 use crate::stats::twosample::{
     Draws, EnergyTest, KolmogorovSmirnov, SignedRank, SpreadRatio, Summary, energy_test, kolmogorov_smirnov,
-    signed_rank, spread_ratio,
+    normality, signed_rank, spread_ratio,
 };
 use nearest::Tree;
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,6 +47,9 @@ pub struct Comparison {
     pub leg: Option<String>,
     /// Distance of each point of a set to the nearest one of the other, set by set, walk by walk, m.
     pub distances: [Vec<f64>; 2],
+    /// Whether those of the first set have a normal law, with their own mean and deviation (Kolmogorov and Smirnov), as the paper
+    /// asks. The points of a walk depend on each other, so p is too small.
+    pub normality: KolmogorovSmirnov,
     /// The same in numbers, m.
     pub clouds: [Summary; 2],
     /// Distances between the points of two random halves of the walks of the first set, both ways, m.
@@ -70,6 +73,36 @@ pub struct Comparisons {
     pub legs: Vec<Comparison>,
     /// Legs with fewer than two walks in a set, and how many there are.
     pub left_out: Vec<(String, [usize; 2])>,
+}
+
+/// Two candidates against each other: which is nearer to the base (the signed rank test of Wilcoxon).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rivals {
+    /// Their numbers, from 0.
+    pub candidates: [usize; 2],
+    /// Of each point of the base: its distance to the second candidate, less that to the first, m. As the paper does; the points of
+    /// a walk depend on each other, so p is too small.
+    pub points: SignedRank,
+    /// The same of each walk of the base, in the mean over its points.
+    pub walks: SignedRank,
+}
+
+/// All pairs of candidates.
+pub fn rivals(base: &[Walk], found: &[&Comparison]) -> Vec<Rivals> {
+    let pairs = (0..found.len()).flat_map(|i| (i + 1..found.len()).map(move |j| [i, j]));
+    let rival = |[i, j]: [usize; 2]| {
+        let both = found[i].distances[0].iter().zip(&found[j].distances[0]);
+        let differences: Vec<f64> = both.map(|(one, other)| other - one).collect();
+        let mut rest = differences.as_slice();
+        let means = base.iter().map(|walk| {
+            let (own, others) = rest.split_at(walk.points.len());
+            rest = others;
+            own.iter().sum::<f64>() / own.len() as f64
+        });
+        let means: Vec<f64> = means.collect();
+        Rivals { candidates: [i, j], points: signed_rank(&differences), walks: signed_rank(&means) }
+    };
+    pairs.map(rival).collect()
 }
 
 /// Compares all walks, and those of each leg. Each set has at least two walks.
@@ -137,6 +170,7 @@ fn between(sets: [&[&Walk]; 2], is_paired: bool, seed: u64) -> Comparison {
     };
     Comparison {
         leg: None,
+        normality: normality(&distances[0]),
         clouds: [Summary::of(&distances[0]), Summary::of(&distances[1])],
         distances,
         halves: Summary::of(&halves),

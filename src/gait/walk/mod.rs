@@ -2,6 +2,7 @@
 //! is swept with the body, not only its end, and the last steps are scaled to end at the goal point.
 
 mod candidate;
+mod cells;
 mod ground;
 mod guided;
 mod hybrid;

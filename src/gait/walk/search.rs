@@ -78,6 +78,7 @@ impl Walk<'_> {
         let pose = self.pose(walker, &way);
         let mut chain = match self.search {
             Search::HybridAStar(search) => search.steps(self, (&pose, &way, number))?,
+            Search::GridAStar => self.along_cells(walker).ok_or(NoStep::Exhausted { expansions: 0 })?,
             Search::Guided { candidates } => match self.guided_steps(&pose, &way, number, candidates, others)
             {
                 Ok(chain) => chain,
@@ -153,6 +154,9 @@ impl Walk<'_> {
 
     /// The angle, rad, by which somebody turns on the spot before the next step.
     fn turn_needed(&self, walker: &Walker, way: &Way) -> Option<f64> {
+        if self.search == Search::GridAStar {
+            return None;
+        }
         let error = angle(walker.heading?, way.direction);
         let is_standing = walker.stance.last.is_none();
         let is_close = way.is_straight && way.length < self.usual();

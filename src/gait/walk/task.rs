@@ -17,6 +17,8 @@ pub enum Search {
     },
     /// Hybrid A*: all steps to the goal at once.
     HybridAStar(HybridAStar),
+    /// Along the shortest path over cells, in even steps of the usual length: what the paper compares with.
+    GridAStar,
 }
 
 impl Default for Search {

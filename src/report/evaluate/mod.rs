@@ -8,6 +8,7 @@ use super::figure;
 use super::figure::{Figure, Flaw};
 use crate::data::tracks::Velocity;
 use crate::report::number::plain;
+use crate::report::svg::picture::Picture;
 use crate::stats::{Estimate, Quality};
 use serde_json::{Value, json};
 use std::io;
@@ -20,7 +21,7 @@ pub const CONSTANT: &str = "constant";
 ///
 /// # Errors
 /// Nothing was evaluated.
-pub fn to_svg(report: &Evaluated) -> Result<String, Flaw> {
+pub fn to_svg(report: &Evaluated) -> Result<Picture, Flaw> {
     figure::draw(Figure::Calibration, &value(report), None)
 }
 

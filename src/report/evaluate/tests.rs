@@ -1,4 +1,5 @@
 use super::*;
+use crate::report::svg::picture::Paper;
 use crate::stats::{Bootstrap, Prediction, Predictions};
 
 const HOSTILE: &str = "<b>\"x\",";
@@ -128,7 +129,7 @@ fn text_compares_with_the_kind_constant() {
 
 #[test]
 fn svg_has_two_frames_for_each_property() {
-    let text = to_svg(&evaluated(["helbing2000", "constant"], "safe")).unwrap();
+    let text = to_svg(&evaluated(["helbing2000", "constant"], "safe")).unwrap().svg(Paper::default());
     for label in [
         "predicted probability of `safe`",
         "predicted probability of `never resolved`",
@@ -169,7 +170,7 @@ fn comparisons_follow_the_interval() {
 fn names_do_not_leave_their_elements() {
     let long = "x".repeat(10_000);
     let report = Evaluated { model: HOSTILE.to_owned(), ..evaluated([HOSTILE, &long], "</svg><script>&") };
-    let text = to_svg(&report).unwrap();
+    let text = to_svg(&report).unwrap().svg(Paper::default());
     assert!(!text.contains("<b>") && !text.contains("<script>") && text.matches("</svg>").count() == 1);
     assert!(text.contains("&lt;/svg&gt;&lt;script&gt;") && !text.contains(&long), "{text}");
     assert!(to_svg(&Evaluated { kinds: vec![], ..report }).is_err(), "nothing was evaluated");

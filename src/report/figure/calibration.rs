@@ -3,14 +3,15 @@
 
 use super::answer::number;
 use super::flaw::Flaw;
-use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
 /// The schema of evaluated predictions that is read.
 const SCHEMA: u64 = 1;
 
-pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     let kinds = file["kinds"].as_array().filter(|_| file["schema"].as_u64() == Some(SCHEMA));
     let Some(kinds) = kinds.filter(|kinds| !kinds.is_empty()) else {
         return Err(Flaw::new(
@@ -52,7 +53,7 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
         frames.extend([frame, predictions(&numbers)]);
     }
     let recording = file["recording"].as_str().unwrap_or_default();
-    Ok(picture(&format!("Reliability on {recording}"), frames))
+    Ok(Picture::charts(&format!("Reliability on {recording}"), frames))
 }
 
 /// How many predictions lie in each tenth: an outline for each kind.

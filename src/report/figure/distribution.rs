@@ -3,7 +3,8 @@
 
 use super::answer::{Answer, Needed, number, with_unit};
 use super::flaw::Flaw;
-use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
@@ -11,7 +12,7 @@ use serde_json::Value;
 const NEEDED: Needed =
     ("a distribution", "ask for a quantile or an expectation, such as `estimate Q(0.5, time_until(safe))`");
 
-pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     let has_one = |results: &[&Value]| {
         results
             .iter()
@@ -19,7 +20,7 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
     };
     let answer = Answer::of(file, only, NEEDED, has_one)?;
     let frames = answer.results.iter().filter_map(|one| frame(one)).collect();
-    Ok(picture(answer.query, frames))
+    Ok(Picture::charts(answer.query, frames))
 }
 
 /// The function of one result; `None` where it has no finite value.

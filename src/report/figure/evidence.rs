@@ -3,7 +3,8 @@
 
 use super::answer::{Answer, Needed, interval, number, with_unit};
 use super::flaw::Flaw;
-use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
@@ -13,10 +14,10 @@ const NEEDED: Needed = ("evidence", "add `--evidence` to the call of `smc check`
 /// Options that are named.
 const NAMED: usize = 12;
 
-pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     let answer =
         Answer::of(file, only, NEEDED, |results| results.len() == 1 && !frames(results[0]).is_empty())?;
-    Ok(picture(answer.query, frames(answer.results[0])))
+    Ok(Picture::charts(answer.query, frames(answer.results[0])))
 }
 
 /// The frames of one result; none if it has no evidence.

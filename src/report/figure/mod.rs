@@ -8,7 +8,7 @@ mod flaw;
 mod ranking;
 mod sweep;
 
-use super::svg::frame::part_of_page;
+use super::svg::picture::Picture;
 pub use flaw::Flaw;
 use serde_json::Value;
 
@@ -32,7 +32,7 @@ pub enum Figure {
 ///
 /// # Errors
 /// The file has another schema, or not what the figure needs.
-pub fn draw(figure: Figure, file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+pub fn draw(figure: Figure, file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     match figure {
         Figure::Sweep => sweep::draw(file, only),
         Figure::Ranking => ranking::draw(file, only),
@@ -48,7 +48,7 @@ pub(super) fn of_result(result: &Value) -> String {
     if frames.is_empty() {
         return String::new();
     }
-    part_of_page(result["query"].as_str().unwrap_or_default(), frames)
+    Picture::charts(result["query"].as_str().unwrap_or_default(), frames).part_of_page()
 }
 
 #[cfg(test)]

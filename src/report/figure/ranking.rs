@@ -2,7 +2,8 @@
 
 use super::answer::{Answer, Needed, interval};
 use super::flaw::Flaw;
-use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
@@ -12,7 +13,7 @@ const NEEDED: Needed = ("a ranking", "ask a ranking: `rank … by P(…)`");
 /// Most options that are drawn.
 const MOST: usize = 40;
 
-pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     let is_ranking = |results: &[&Value]| results.len() == 1 && results[0]["options"].is_array();
     let answer = Answer::of(file, only, NEEDED, is_ranking)?;
     let options = answer.results[0]["options"].as_array().map_or(&[][..], Vec::as_slice);
@@ -32,5 +33,5 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
         };
         frame.lying(row, interval(option), style);
     }
-    Ok(picture(answer.query, vec![frame]))
+    Ok(Picture::charts(answer.query, vec![frame]))
 }

@@ -2,7 +2,8 @@
 
 use super::answer::{Answer, Needed, interval, number, with_unit};
 use super::flaw::Flaw;
-use crate::report::svg::frame::{Frame, picture};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use serde_json::Value;
 
@@ -13,7 +14,7 @@ const NEEDED: Needed =
 /// A line: the other parameters in words, and the place and interval of each result.
 type Line = (String, Vec<(f64, [f64; 3])>);
 
-pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
+pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     let answer = Answer::of(file, only, NEEDED, |results| results.len() > 1)?;
     let settings: Vec<_> = answer.results.iter().filter_map(|one| one["settings"].as_object()).collect();
     let names = settings.first().map(|first| first.keys()).into_iter().flatten();
@@ -59,7 +60,7 @@ pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<String, Flaw> {
             frame.name(label, k);
         }
     }
-    Ok(picture(answer.query, vec![frame]))
+    Ok(Picture::charts(answer.query, vec![frame]))
 }
 
 /// A value with its unit.

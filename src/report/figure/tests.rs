@@ -3,6 +3,10 @@
 use super::*;
 use serde_json::json;
 
+fn drawn(figure: Figure, file: &Value, only: Option<&str>) -> String {
+    draw(figure, file, only).unwrap().svg(crate::report::svg::picture::Paper::default())
+}
+
 fn sweep() -> Value {
     let result = |width: f64, estimate: f64| {
         json!({
@@ -16,14 +20,14 @@ fn sweep() -> Value {
 
 #[test]
 fn names_do_not_break_out() {
-    let svg = draw(Figure::Sweep, &sweep(), None).unwrap();
+    let svg = drawn(Figure::Sweep, &sweep(), None);
     assert!(!svg.contains("<script>") && svg.contains("&lt;/script&gt;"), "{svg}");
     insta::assert_snapshot!("sweep", svg);
 }
 
 #[test]
 fn what_cannot_be_drawn_is_said_with_a_hint() {
-    let wrong = |figure, file: &Value, only| draw(figure, file, only).unwrap_err();
+    let wrong = |figure, file: &Value, only| draw(figure, file, only).err().unwrap();
     let mut several = sweep();
     let mut others = several["results"].as_array().unwrap().clone();
     for other in &mut others {
@@ -92,13 +96,12 @@ fn rankings_distributions_evidence_and_calibration() {
         ] }] }],
     });
     let drawn = [
-        draw(Figure::Ranking, &file, None),
-        draw(Figure::Evidence, &file, Some("rank")),
-        draw(Figure::Evidence, &file, Some("check")),
-        draw(Figure::Distribution, &file, None),
-        draw(Figure::Calibration, &evaluated, None),
+        drawn(Figure::Ranking, &file, None),
+        drawn(Figure::Evidence, &file, Some("rank")),
+        drawn(Figure::Evidence, &file, Some("check")),
+        drawn(Figure::Distribution, &file, None),
+        drawn(Figure::Calibration, &evaluated, None),
     ];
-    let drawn = drawn.map(Result::unwrap);
     assert!(drawn.iter().all(|svg| !svg.contains("NaN") && !svg.contains("inf")), "{drawn:?}");
     insta::assert_snapshot!("figures", drawn.concat());
 }

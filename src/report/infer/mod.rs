@@ -6,8 +6,9 @@ use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::data::tracks::Velocity;
 use crate::perception::{Birth, Death, Group, Inference, InferredTrace, Inferring, Padding};
 use crate::report::number::thousandths;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::{Drawing, Ink};
-pub use page::to_page;
+pub use page::{to_page, to_text};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -129,7 +130,7 @@ fn group(one: &Group) -> Value {
 const RADIUS: f64 = 0.2;
 
 /// The picture.
-pub fn to_svg(report: &InferredFile) -> String {
+pub fn to_svg(report: &InferredFile) -> Picture {
     let found = report.inference;
     let places = found.points.iter().map(|one| one.point.position);
     let low = places.clone().fold(Vec2::repeat(f64::INFINITY), |a, p| a.inf(&p));
@@ -159,7 +160,11 @@ pub fn to_svg(report: &InferredFile) -> String {
             drawing.dot(*last, Ink::TRACE_END);
         }
     }
-    drawing.finish(&format!("Traces and groups of {} ({} velocities)", report.file, report.velocity.name()))
+    drawing.name(Ink::TRACE, "traces");
+    drawing.name(Ink::TRACE_START, "where they begin");
+    drawing.name(Ink::TRACE_END, "where they end");
+    drawing.name(Ink::GROUP, "groups, at each instant");
+    Picture::plan(&format!("Traces and groups of people ({} velocities)", report.velocity.name()), drawing)
 }
 
 #[cfg(test)]
@@ -167,6 +172,7 @@ mod tests {
     use super::*;
     use crate::data::tracks::{Batch, read_observations};
     use crate::perception::{ConstantVelocity, infer};
+    use crate::report::svg::picture::Paper;
 
     #[test]
     fn all_formats_hold_the_same_points() {
@@ -197,7 +203,7 @@ mod tests {
         assert_eq!(csv.lines().count(), 4);
         assert_eq!(csv.lines().nth(1), Some("0,1,1,0,0,,,4"));
         assert_eq!(csv.lines().nth(3), Some("0.4,1,1,0.1,0,0.251,0,4"));
-        let svg = to_svg(&report);
+        let svg = to_svg(&report).svg(Paper::default());
         assert_eq!(svg.matches("<polyline").count(), 2);
         assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
     }

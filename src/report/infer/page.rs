@@ -10,6 +10,7 @@ use crate::report::html::{Page, Table};
 use crate::report::number::{brief, count};
 use crate::syntax::source::Source;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// The page. The player has the walls and regions of a scene.
 pub fn to_page<'a>(report: &InferredFile, scene: Scene, sources: &'a [Source]) -> Page<'a> {
@@ -22,6 +23,19 @@ pub fn to_page<'a>(report: &InferredFile, scene: Scene, sources: &'a [Source]) -
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
         without_crowd: false,
     }
+}
+
+/// For people: the same tables.
+pub fn to_text(report: &InferredFile) -> String {
+    let found = report.inference;
+    let mut out = format!("{}, {} velocities\n", report.file, report.velocity.name());
+    for table in [counts(found)].into_iter().chain(scores(found)) {
+        let _ = writeln!(out, "\n{}", table.title);
+        for row in &table.rows {
+            let _ = writeln!(out, "  {:<48} {}", row[0], row[1..].join("  "));
+        }
+    }
+    out
 }
 
 /// The traces, each with the groups of several members that it was in.

@@ -7,15 +7,17 @@ use crate::report::escape::escape;
 use crate::report::number::plain;
 use std::fmt::Write as _;
 
-/// The name of the language, which a picture alone needs.
-const LANGUAGE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
+/// Size of a frame from left to right unless the paper says another, pixels.
+pub(super) const WIDTH: f64 = 608.0;
 /// Size of the area between the axes, pixels.
 const AREA: (f64, f64) = (520.0, 300.0);
+/// Least width of that area.
+const LEAST: f64 = 80.0;
 /// Room at the left, above, at the right and below, pixels.
 const ROOM: [f64; 4] = [64.0, 30.0, 24.0, 46.0];
 /// Width of a letter and height of a line of text, pixels.
-const LETTER: f64 = 6.2;
-const LINE: f64 = 16.0;
+pub(super) const LETTER: f64 = 6.2;
+pub(super) const LINE: f64 = 16.0;
 /// Most letters of a name.
 const LETTERS: usize = 48;
 /// Colours of lines, with their widths and dashes, in order.
@@ -28,14 +30,26 @@ const LINES: [(&str, &str); 6] = [
     ("#b39ddb", "stroke-width=\"2\" stroke-dasharray=\"4 2\""),
 ];
 
+/// What is drawn in a frame; the last number of each is that of its style.
+#[derive(Clone, Debug)]
+enum Mark {
+    Line(Vec<(f64, f64)>, usize),
+    Band(Vec<(f64, f64)>, usize),
+    Upright(f64, [f64; 3], usize),
+    Lying(usize, [f64; 3], usize),
+    Cloud(Vec<(f64, f64)>, usize),
+    Dot(f64, f64, usize),
+    Level(f64, String),
+}
+
 /// A frame with what is drawn in it.
 #[derive(Clone, Debug)]
 pub struct Frame {
     x: Scale,
     y: Scale,
-    left: f64,
+    rows: Vec<String>,
     height: f64,
-    body: String,
+    marks: Vec<Mark>,
     legend: Vec<(String, usize)>,
     axes: [String; 2],
 }
@@ -46,9 +60,9 @@ impl Frame {
         Self {
             x,
             y,
-            left: ROOM[0],
+            rows: Vec::new(),
             height: AREA.1,
-            body: String::new(),
+            marks: Vec::new(),
             legend: Vec::new(),
             axes: axes.map(str::to_owned),
         }
@@ -56,33 +70,15 @@ impl Frame {
 
     /// A frame with a row for each name, from above.
     pub fn rows(axis: &str, x: Scale, names: &[String]) -> Self {
-        let mut frame = Self::new([axis, ""], x, Scale::places(names.len()));
-        let names: Vec<String> = names.iter().map(|name| shortened(name)).collect();
-        let letters = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-        frame.left = (20.0 + LETTER * letters as f64).max(ROOM[0]);
-        frame.height = 1.5 * LINE * names.len() as f64;
-        for (k, name) in names.iter().enumerate() {
-            let y = height_of_row(k);
-            let x = frame.left - 10.0;
-            text(&mut frame.body, (x, y + 4.0), "end", name);
-        }
-        frame
+        let rows: Vec<String> = names.iter().map(|name| shortened(name)).collect();
+        let height = 1.5 * LINE * names.len() as f64;
+        Self { rows, height, ..Self::new([axis, ""], x, Scale::places(names.len())) }
     }
 
     /// Half as high.
     pub fn low(mut self) -> Self {
         self.height = 0.5 * AREA.1;
         self
-    }
-
-    fn at(&self, x: f64, y: f64) -> (f64, f64) {
-        (self.left + AREA.0 * self.x.share(x), ROOM[1] + self.height * (1.0 - self.y.share(y)))
-    }
-
-    fn points(&self, points: impl IntoIterator<Item = (f64, f64)>) -> String {
-        let known = points.into_iter().filter(|(x, y)| !x.is_nan() && !y.is_nan());
-        let pixels = known.map(|(x, y)| self.at(x, y)).map(|(x, y)| format!("{x:.1},{y:.1}"));
-        pixels.collect::<Vec<_>>().join(" ")
     }
 
     /// A name of what has style number `k`, for the legend.
@@ -92,40 +88,132 @@ impl Frame {
 
     /// A line in style number `k`.
     pub fn line(&mut self, points: impl IntoIterator<Item = (f64, f64)>, k: usize) {
-        let points = self.points(points);
-        let _ = writeln!(self.body, "<polyline points=\"{points}\" fill=\"none\" {}/>", style(k));
+        self.marks.push(Mark::Line(points.into_iter().collect(), k));
     }
 
     /// The area between two lines over the same places.
     pub fn band(&mut self, points: &[(f64, f64, f64)], k: usize) {
         let above = points.iter().map(|(x, _, high)| (*x, *high));
         let below = points.iter().rev().map(|(x, low, _)| (*x, *low));
-        let points = self.points(above.chain(below));
-        let _ = writeln!(
-            self.body,
-            "<polygon points=\"{points}\" {} fill-opacity=\"0.18\" stroke=\"none\"/>",
-            filled(k)
-        );
+        self.marks.push(Mark::Band(above.chain(below).collect(), k));
     }
 
     /// An interval that stands at a place, with its estimate.
-    pub fn upright(&mut self, x: f64, [low, middle, high]: [f64; 3], k: usize) {
-        let ((at, from), (_, to)) = (self.at(x, low), self.at(x, high));
-        self.whisker(&format!("M{at:.1},{from:.1}V{to:.1}m-3,0h6M{:.1},{from:.1}h6", at - 3.0), k);
-        if !middle.is_nan() {
-            let place = self.at(x, middle);
-            self.dot(place, k);
-        }
+    pub fn upright(&mut self, x: f64, interval: [f64; 3], k: usize) {
+        self.marks.push(Mark::Upright(x, interval, k));
     }
 
     /// An interval in row number `row`, with its estimate.
-    pub fn lying(&mut self, row: usize, [low, middle, high]: [f64; 3], k: usize) {
-        let y = height_of_row(row);
-        let ((from, _), (to, _)) = (self.at(low, 0.0), self.at(high, 0.0));
-        self.whisker(&format!("M{from:.1},{y:.1}H{to:.1}m0,-3v6M{from:.1},{:.1}v6", y - 3.0), k);
-        if !middle.is_nan() {
-            let (x, _) = self.at(middle, 0.0);
-            self.dot((x, y), k);
+    pub fn lying(&mut self, row: usize, interval: [f64; 3], k: usize) {
+        self.marks.push(Mark::Lying(row, interval, k));
+    }
+
+    /// Pale dots, of which those at one place look like one.
+    pub fn cloud(&mut self, points: impl IntoIterator<Item = (f64, f64)>, k: usize) {
+        self.marks.push(Mark::Cloud(points.into_iter().collect(), k));
+    }
+
+    /// A dot at a place.
+    pub fn mark(&mut self, x: f64, y: f64, k: usize) {
+        self.marks.push(Mark::Dot(x, y, k));
+    }
+
+    /// A thin dashed line at a height, with its name.
+    pub fn level(&mut self, y: f64, name: &str) {
+        self.marks.push(Mark::Level(y, shortened(name)));
+    }
+
+    /// Frame, marks, ticks, names and legend in so many pixels from left to right, and how high it is.
+    pub(super) fn drawn(&self, width: f64) -> (String, f64) {
+        let letters = self.rows.iter().map(|name| name.chars().count()).max();
+        let left = letters.map_or(ROOM[0], |letters| (20.0 + LETTER * letters as f64).max(ROOM[0]));
+        let wide = (width - left - ROOM[2]).max(LEAST);
+        let part = if self.rows.is_empty() { (wide / AREA.0).clamp(0.6, 1.0) } else { 1.0 };
+        Layout { frame: self, left, width: wide, height: part * self.height, body: String::new() }.finish()
+    }
+
+    /// Whether a style has dots.
+    fn has_dots(&self, k: usize) -> bool {
+        self.marks.iter().any(|mark| {
+            matches!(mark, Mark::Upright(_, _, of) | Mark::Lying(_, _, of) | Mark::Dot(_, _, of)
+                | Mark::Cloud(_, of) if *of == k)
+        })
+    }
+}
+
+/// A frame of a size, pixels, and what is drawn of it.
+struct Layout<'f> {
+    frame: &'f Frame,
+    left: f64,
+    width: f64,
+    height: f64,
+    body: String,
+}
+
+impl Layout<'_> {
+    fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        let (x, y) = (self.frame.x.share(x), self.frame.y.share(y));
+        (self.left + self.width * x, ROOM[1] + self.height * (1.0 - y))
+    }
+
+    fn points(&self, points: &[(f64, f64)]) -> String {
+        let known = points.iter().filter(|(x, y)| !x.is_nan() && !y.is_nan());
+        let pixels = known.map(|(x, y)| self.at(*x, *y)).map(|(x, y)| format!("{x:.1},{y:.1}"));
+        pixels.collect::<Vec<_>>().join(" ")
+    }
+
+    fn mark(&mut self, mark: &Mark) {
+        match mark {
+            Mark::Line(points, k) => {
+                let points = self.points(points);
+                let _ = writeln!(self.body, "<polyline points=\"{points}\" fill=\"none\" {}/>", style(*k));
+            }
+            Mark::Band(points, k) => {
+                let points = self.points(points);
+                let _ = writeln!(
+                    self.body,
+                    "<polygon points=\"{points}\" {} fill-opacity=\"0.18\" stroke=\"none\"/>",
+                    filled(*k)
+                );
+            }
+            Mark::Upright(x, [low, middle, high], k) => {
+                let ((at, from), (_, to)) = (self.at(*x, *low), self.at(*x, *high));
+                self.whisker(&format!("M{at:.1},{from:.1}V{to:.1}m-3,0h6M{:.1},{from:.1}h6", at - 3.0), *k);
+                if !middle.is_nan() {
+                    self.dot(self.at(*x, *middle), *k);
+                }
+            }
+            Mark::Lying(row, [low, middle, high], k) => {
+                let y = height_of_row(*row);
+                let ((from, _), (to, _)) = (self.at(*low, 0.0), self.at(*high, 0.0));
+                self.whisker(&format!("M{from:.1},{y:.1}H{to:.1}m0,-3v6M{from:.1},{:.1}v6", y - 3.0), *k);
+                if !middle.is_nan() {
+                    self.dot((self.at(*middle, 0.0).0, y), *k);
+                }
+            }
+            Mark::Cloud(points, k) => {
+                let pixels = points.iter().map(|(x, y)| self.at(*x, *y));
+                let mut places: Vec<String> = pixels.map(|(x, y)| format!("M{x:.1},{y:.1}h0")).collect();
+                places.sort_unstable();
+                places.dedup();
+                let (colour, _) = LINES[k % LINES.len()];
+                let _ = writeln!(
+                    self.body,
+                    "<path d=\"{}\" fill=\"none\" class=\"line-{}\" stroke=\"{colour}\" stroke-width=\"5\" stroke-linecap=\"round\" stroke-opacity=\"0.5\"/>",
+                    places.concat(),
+                    k % LINES.len()
+                );
+            }
+            Mark::Dot(x, y, k) => self.dot(self.at(*x, *y), *k),
+            Mark::Level(y, name) => {
+                let (left, right) = (self.left, self.left + self.width);
+                let (_, at) = self.at(0.0, *y);
+                let _ = writeln!(
+                    self.body,
+                    "<path class=\"rim\" d=\"M{left:.1},{at:.1}H{right:.1}\" stroke=\"#606060\" stroke-dasharray=\"3 3\"/>"
+                );
+                text(&mut self.body, (right - 4.0, at - 4.0), "end", name);
+            }
         }
     }
 
@@ -149,105 +237,57 @@ impl Frame {
         let _ = writeln!(self.body, "<path d=\"M{x:.1},{y:.1}{shape}\" {} stroke=\"none\"/>", filled(k));
     }
 
-    /// Pale dots, of which those at one place look like one.
-    pub fn cloud(&mut self, points: impl IntoIterator<Item = (f64, f64)>, k: usize) {
-        let mut places: Vec<String> = points
-            .into_iter()
-            .map(|(x, y)| self.at(x, y))
-            .map(|(x, y)| format!("M{x:.1},{y:.1}h0"))
-            .collect();
-        places.sort_unstable();
-        places.dedup();
-        let (colour, _) = LINES[k % LINES.len()];
-        let _ = writeln!(
-            self.body,
-            "<path d=\"{}\" fill=\"none\" class=\"line-{}\" stroke=\"{colour}\" stroke-width=\"5\" stroke-linecap=\"round\" stroke-opacity=\"0.5\"/>",
-            places.concat(),
-            k % LINES.len()
-        );
-    }
-
-    /// A dot at a place.
-    pub fn mark(&mut self, x: f64, y: f64, k: usize) {
-        let place = self.at(x, y);
-        self.dot(place, k);
-    }
-
-    /// A thin dashed line at a height, with its name.
-    pub fn level(&mut self, y: f64, name: &str) {
-        let (left, right) = (self.left, self.left + AREA.0);
-        let (_, at) = self.at(0.0, y);
-        let _ = writeln!(
-            self.body,
-            "<path class=\"rim\" d=\"M{left:.1},{at:.1}H{right:.1}\" stroke=\"#606060\" stroke-dasharray=\"3 3\"/>"
-        );
-        text(&mut self.body, (right - 4.0, at - 4.0), "end", &shortened(name));
-    }
-
-    /// Frame, ticks, names and legend.
-    fn finish(mut self) -> (String, [f64; 2]) {
-        let (left, top, right, bottom) = (self.left, ROOM[1], self.left + AREA.0, ROOM[1] + self.height);
+    fn finish(mut self) -> (String, f64) {
+        let frame = self.frame;
+        for (k, name) in frame.rows.iter().enumerate() {
+            text(&mut self.body, (self.left - 10.0, height_of_row(k) + 4.0), "end", name);
+        }
+        frame.marks.iter().for_each(|mark| self.mark(mark));
+        let (left, top, right, bottom) = (self.left, ROOM[1], self.left + self.width, ROOM[1] + self.height);
         let mut lines = String::new();
         let mut grid = |path: String| {
             let _ = writeln!(lines, "<path class=\"grid\" d=\"{path}\" stroke=\"#d8d8d8\"/>");
         };
-        for &tick in self.x.ticks() {
-            let x = left + AREA.0 * self.x.share(tick);
+        // Numbers that would touch each other are left out.
+        let mut free = f64::NEG_INFINITY;
+        for &tick in frame.x.ticks() {
+            let (x, number) = (left + self.width * frame.x.share(tick), plain(tick));
+            let half = 0.5 * LETTER * number.chars().count() as f64;
             grid(format!("M{x:.1},{top:.1}V{:.1}", bottom + 4.0));
-            text(&mut self.body, (x, bottom + 17.0), "middle", &plain(tick));
+            if x - half > free {
+                text(&mut self.body, (x, bottom + 17.0), "middle", &number);
+                free = x + half + LETTER;
+            }
         }
-        for &tick in self.y.ticks() {
-            let y = bottom - self.height * self.y.share(tick);
+        for &tick in frame.y.ticks() {
+            let y = bottom - self.height * frame.y.share(tick);
             grid(format!("M{:.1},{y:.1}H{right:.1}", left - 4.0));
             text(&mut self.body, (left - 7.0, y + 4.0), "end", &plain(tick));
         }
         let _ = writeln!(
             self.body,
             "<rect class=\"rim\" x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"#606060\"/>",
-            AREA.0, self.height
+            self.width, self.height
         );
-        let [below, above] = self.axes.clone();
-        text(&mut self.body, (right, bottom + 36.0), "end", &below);
-        text(&mut self.body, (left, top - 10.0), "start", &above);
+        let [below, above] = &frame.axes;
+        text(&mut self.body, (right, bottom + 36.0), "end", below);
+        text(&mut self.body, (left, top - 10.0), "start", above);
         let mut y = bottom + ROOM[3] + 4.0;
-        for (name, k) in std::mem::take(&mut self.legend) {
-            let _ = writeln!(self.body, "<path d=\"M{left:.1},{y:.1}h28\" fill=\"none\" {}/>", style(k));
-            self.dot((left + 14.0, y), k);
-            text(&mut self.body, (left + 36.0, y + 4.0), "start", &name);
+        for (name, k) in &frame.legend {
+            let _ = writeln!(self.body, "<path d=\"M{left:.1},{y:.1}h28\" fill=\"none\" {}/>", style(*k));
+            if frame.has_dots(*k) {
+                self.dot((left + 14.0, y), *k);
+            }
+            text(&mut self.body, (left + 36.0, y + 4.0), "start", name);
             y += LINE;
         }
-        (lines + &self.body, [right + ROOM[2], y])
+        (lines + &self.body, y)
     }
 }
 
 /// The height of row number `k` from above, pixels.
 fn height_of_row(k: usize) -> f64 {
     ROOM[1] + 1.5 * LINE * (k as f64 + 0.5)
-}
-
-/// Frames below each other as one picture, for a file of its own.
-pub fn picture(title: &str, frames: Vec<Frame>) -> String {
-    drawn(title, frames, LANGUAGE)
-}
-
-/// The same for a place within a page.
-pub fn part_of_page(title: &str, frames: Vec<Frame>) -> String {
-    drawn(title, frames, "")
-}
-
-fn drawn(title: &str, frames: Vec<Frame>, language: &str) -> String {
-    let (mut body, mut width, mut y) = (String::new(), 0.0_f64, 2.0 * LINE);
-    for frame in frames {
-        let (drawn, [wide, high]) = frame.finish();
-        let _ = writeln!(body, "<g transform=\"translate(0 {y:.1})\">\n{drawn}</g>");
-        (width, y) = (width.max(wide), y + high + 8.0);
-    }
-    let letters = (width / LETTER) as usize - 4;
-    format!(
-        "<svg{language} viewBox=\"0 0 {width:.0} {y:.0}\" width=\"{width:.0}\" role=\"img\" font-family=\"sans-serif\" font-size=\"11\">\n<title>{}</title>\n<rect class=\"paper\" width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n<text x=\"12\" y=\"20\" font-size=\"12\">{}</text>\n{body}</svg>\n",
-        escape(title),
-        escape(&cut(title, letters))
-    )
 }
 
 fn style(k: usize) -> String {
@@ -272,7 +312,7 @@ fn shortened(name: &str) -> String {
     cut(name, LETTERS)
 }
 
-fn cut(name: &str, letters: usize) -> String {
+pub(super) fn cut(name: &str, letters: usize) -> String {
     match name.char_indices().nth(letters) {
         Some((end, _)) => format!("{}…", &name[..end]),
         None => name.to_owned(),

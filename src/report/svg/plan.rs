@@ -1,5 +1,6 @@
 //! The plan of a scenario: barriers, regions, starts, and the shortest ways from the starts through all goals.
 
+use super::picture::Picture;
 use super::{Drawing, Ink};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::model::{Agent, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario};
@@ -102,8 +103,8 @@ pub fn scene(scenario: &Scenario) -> Drawing {
     drawn(scenario, std::iter::empty())
 }
 
-/// The plan of a scenario as SVG.
-pub fn draw(scenario: &Scenario) -> String {
+/// The plan of a scenario.
+pub fn draw(scenario: &Scenario) -> Picture {
     let atlas = Atlas::new(scenario.scene.clone());
     let shown = shown(scenario);
     let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
@@ -113,7 +114,10 @@ pub fn draw(scenario: &Scenario) -> String {
         drawing.text(middle(points), &format!("{} m", plain((length * 10.0).round() / 10.0)));
     }
     name_places(&mut drawing, scenario);
-    drawing.finish(if scenario.title.is_empty() { "plan" } else { &scenario.title })
+    if !ways.is_empty() {
+        drawing.name(Ink::WAY, "shortest ways");
+    }
+    Picture::plan(if scenario.title.is_empty() { "plan" } else { &scenario.title }, drawing)
 }
 
 /// Names of regions, lines and points.

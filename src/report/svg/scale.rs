@@ -30,6 +30,13 @@ impl Scale {
         Self { low: first * step, high: last * step, ticks: ticks.collect(), is_log: false }
     }
 
+    /// A linear axis that ends exactly at two numbers.
+    pub fn between(low: f64, high: f64) -> Self {
+        let wide = Self::linear([low, high]);
+        let ticks = wide.ticks.into_iter().filter(|tick| (low..=high).contains(tick)).collect();
+        Self { low, high: high.max(low + f64::MIN_POSITIVE), ticks, is_log: false }
+    }
+
     /// A linear axis around probabilities and their differences: from 0 to 1 where they lie apart.
     pub fn probabilities(numbers: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = ends(numbers);

@@ -1,5 +1,6 @@
 //! The root paths of steps in their own frames (Agethen et al. 2018, Figure 3): each begins at the origin along +x.
 
+use super::picture::Picture;
 use super::{Drawing, Ink};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::gait::{Foot, RecordedStep};
@@ -8,7 +9,7 @@ use crate::gait::{Foot, RecordedStep};
 const PIECES: u32 = 12;
 
 /// The picture, with the mean path of each foot.
-pub fn draw(steps: &[RecordedStep]) -> String {
+pub fn draw(steps: &[RecordedStep]) -> Picture {
     let path = |step: &RecordedStep| -> Vec<Vec2> {
         let curve = step.shape.curve();
         (0..=PIECES).map(|k| curve.place(f64::from(k) / f64::from(PIECES))).collect()
@@ -29,5 +30,8 @@ pub fn draw(steps: &[RecordedStep]) -> String {
             drawing.text(path[PIECES as usize], &format!("{name} ({})", own.len()));
         }
     }
-    drawing.finish("root paths of steps (m)")
+    drawing.name(Ink::LEFT_STEP, "left foot");
+    drawing.name(Ink::RIGHT_STEP, "right foot");
+    drawing.name(Ink::WAY, "means");
+    Picture::plan("root paths of steps", drawing)
 }

@@ -5,7 +5,8 @@ use crate::data::table::{CSV, Column, Kind, Table, Value, write};
 use crate::gait::Foot;
 use crate::model::Scenario;
 use crate::report::number::count;
-use crate::report::svg::{Ink, plan};
+use crate::report::svg::picture::Picture;
+use crate::report::svg::{Drawing, Ink, plan};
 use crate::stats::twosample::Summary;
 use serde_json::{Map, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -200,29 +201,35 @@ fn thinned(points: &[Vec2]) -> Vec<Vec2> {
     drawn
 }
 
-/// The picture as SVG.
-pub fn draw(scenario: &Scenario, walked: &Walked) -> String {
-    let walks = walked.legs.iter().flat_map(|leg| &leg.walks);
-    let walks: Vec<Vec<Vec2>> =
-        walks.map(|walk| walk.places.iter().map(|place| place.position).collect()).collect();
+/// Walks as thin lines over cells, the darker the more walks pass them; how many pass the darkest.
+pub(super) fn corridor(drawing: &mut Drawing, walks: &[Vec<Vec2>]) -> u64 {
     let mut passed = BTreeMap::<(i64, i64), u64>::new();
-    for walk in &walks {
+    for walk in walks {
         for cell in walk.iter().map(|point| cell(*point)).collect::<BTreeSet<_>>() {
             *passed.entry(cell).or_default() += 1;
         }
     }
     let most = passed.values().copied().max().unwrap_or(1);
-    let mut drawing = plan::drawn(scenario, walks.iter().flatten().copied());
     for ((x, y), walks) in passed {
         drawing.cell(Vec2::new(x as f64, y as f64) * SIDE, SIDE, walks as f64 / most as f64);
     }
     for walk in walks.iter().filter(|walk| walk.len() > 1) {
         drawing.line(&thinned(walk), Ink::WALK);
     }
+    most
+}
+
+/// The picture.
+pub fn draw(scenario: &Scenario, walked: &Walked) -> Picture {
+    let walks = walked.legs.iter().flat_map(|leg| &leg.walks);
+    let walks: Vec<Vec<Vec2>> =
+        walks.map(|walk| walk.places.iter().map(|place| place.position).collect()).collect();
+    let mut drawing = plan::drawn(scenario, walks.iter().flatten().copied());
+    let most = corridor(&mut drawing, &walks);
     plan::name_places(&mut drawing, scenario);
     let (all, most) = (count(walks.len() as u64), count(most));
     drawing.note(&format!("{all} walks; cells of {SIDE} m, the darkest is passed by {most}"));
-    drawing.finish(if walked.title.is_empty() { "walks" } else { &walked.title })
+    Picture::plan(if walked.title.is_empty() { "walks" } else { &walked.title }, drawing)
 }
 
 // Traces of walks as `smc gait compare` reads them, at any rate: between two states the line between them.

@@ -68,14 +68,37 @@ pub struct Violations {
     pub join_region: bool,
 }
 
+impl NeverReturns {
+    /// As a phrase.
+    pub const fn phrase(self) -> &'static str {
+        match self {
+            Self::Start => "the first piece leaves the region however short it is",
+            Self::End => "the last piece leaves the region however short it is",
+            Self::Pieces => "four pieces or fewer, so that the counter never meets its end",
+            Self::Stuck => "a piece in between leaves the region however short it is",
+        }
+    }
+}
+
 impl Violations {
+    /// What is broken.
+    pub fn names(self) -> Vec<&'static str> {
+        let all = [
+            (self.piece_acceleration, "a piece breaks the limit of acceleration"),
+            (self.join_acceleration, "the join breaks the limit of acceleration"),
+            (self.join_region, "the join leaves the region"),
+        ];
+        all.into_iter().filter_map(|(is, name)| is.then_some(name)).collect()
+    }
+
     /// Whether any limit is broken.
     pub fn any(self) -> bool {
         self.piece_acceleration || self.join_acceleration || self.join_region
     }
 }
 
-/// One run of the algorithm. `draw(k)` gives independent uniform numbers in (0, 1).
+/// One run of the algorithm with so many `pieces` (m0), or with a number of them that is drawn from 2 to 10 as printed. `draw(k)`
+/// gives independent uniform numbers in (0, 1).
 ///
 /// # Errors
 ///
@@ -85,6 +108,7 @@ pub fn printed(
     limits: Limits,
     start_speed: f64,
     end_speed: f64,
+    pieces: Option<usize>,
     mut draw: impl FnMut(u32) -> f64,
 ) -> Result<Printed, Infeasible> {
     let region = region(stretches, limits, start_speed, end_speed)?;
@@ -109,7 +133,8 @@ pub fn printed(
     let Some(last) = last else { return Ok(Printed::NeverReturns(NeverReturns::End)) };
     // Lines 18 to 28: pieces in between. The counter begins at 1 and is compared with m0 - 3 after it is raised. The loop
     // as printed ends before P_{m0-3}, from which line 29 joins; here that piece is made too.
-    let count = 2 + (uniform() * 9.0) as usize;
+    let drawn = 2 + (uniform() * 9.0) as usize;
+    let count = pieces.unwrap_or(drawn);
     if count <= 4 {
         return Ok(Printed::NeverReturns(NeverReturns::Pieces));
     }
@@ -183,6 +208,41 @@ impl PrintedProfile {
             self.ends(&join).any(|(span, x)| exceeds(speed(x) * speed(x), slope * speed(x), span));
         let join_region = !stays(&self.region, join.from.0, join.to.0, |x| speed(x) * speed(x));
         Violations { piece_acceleration, join_acceleration, join_region }
+    }
+
+    /// Time, s, place, m, speed, m/s, and acceleration along the path, m/s^2, at so many places of each piece, and at the end.
+    pub fn points(&self, per_piece: u32) -> Vec<[f64; 4]> {
+        let (last, before) = (self.pieces.len() - 1, self.pieces.iter());
+        let parts = before
+            .take(last)
+            .map(|piece| (piece, false))
+            .chain([(&self.join, true), (&self.pieces[last], false)]);
+        let (mut rows, mut begin) = (Vec::new(), 0.0);
+        let mut end = [0.0; 4];
+        for (part, is_join) in parts {
+            let ((from, low), (to, high)) = (part.from, part.to);
+            let (v, length) = (low.sqrt(), to - from);
+            let row = |k: u32| {
+                let x = length * f64::from(k) / f64::from(per_piece);
+                if is_join {
+                    let slope = (high.sqrt() - v) / length;
+                    let speed = v + slope * x;
+                    let ratio = slope * x / v;
+                    let time = if ratio.abs() < 1e-12 { x / v } else { x / v * ln_1p(ratio) / ratio };
+                    [begin + time, from + x, speed, slope * speed]
+                } else {
+                    let acceleration = 0.5 * (high - low) / length;
+                    let speed = (low + 2.0 * acceleration * x).max(0.0).sqrt();
+                    let mean = 0.5 * (v + speed);
+                    [begin + if mean > 0.0 { x / mean } else { 0.0 }, from + x, speed, acceleration]
+                }
+            };
+            rows.extend((0..per_piece).map(row));
+            end = row(per_piece);
+            begin = end[0];
+        }
+        rows.push(end);
+        rows
     }
 
     /// How long the motion takes, s; infinite if the join reaches speed 0.

@@ -3,6 +3,7 @@
 //! ties too. Large samples use the limit of Kolmogorov.
 
 use crate::base::math;
+use crate::base::special::normal::normal_cdf;
 
 /// Up to so many pairs of values p is exact: the count takes as many steps.
 const MOST_PAIRS: usize = 25_000_000;
@@ -55,6 +56,26 @@ pub fn kolmogorov_smirnov(a: &[f64], b: &[f64]) -> KolmogorovSmirnov {
     KolmogorovSmirnov { d, p: p[m] }
 }
 
+/// Tests whether numbers have a normal law with their own mean and standard deviation: the largest difference of both distribution
+/// functions, and p of Kolmogorov's limit, which is too large since mean and deviation are those of the numbers (Lilliefors
+/// 1967): where it is small, the law is not normal. NaN for fewer than two different numbers.
+pub fn normality(values: &[f64]) -> KolmogorovSmirnov {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let deviation = (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0)).sqrt();
+    if deviation.is_nan() || deviation <= 0.0 {
+        return KolmogorovSmirnov { d: f64::NAN, p: f64::NAN };
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let off = |(k, x): (usize, &f64)| {
+        let below = normal_cdf((x - mean) / deviation);
+        (below - k as f64 / n).abs().max(((k + 1) as f64 / n - below).abs())
+    };
+    let d = sorted.iter().enumerate().map(off).fold(0.0, f64::max);
+    KolmogorovSmirnov { d, p: limit(n.sqrt() * d) }
+}
+
 /// P(K > x) of Kolmogorov's law: 2 Σ (-1)^(k - 1) exp(-2 k^2 x^2).
 fn limit(x: f64) -> f64 {
     // Below, it is 1 to 12 digits, and the sum converges slowly.
@@ -72,6 +93,16 @@ fn limit(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn normality_is_that_of_the_definition() {
+        // By the error function and the series of Kolmogorov in other code; scipy.stats.kstest with the mean and the deviation.
+        const NORMAL: (f64, f64) = (0.139_258_497_302_253_76, 0.194_965_300_470_516_7);
+        let numbers: Vec<f64> = (0..60).map(|k| f64::from(k * k % 47) * 0.1).collect();
+        let found = normality(&numbers);
+        assert!((found.d - NORMAL.0).abs() < 1e-12 && (found.p - NORMAL.1).abs() < 1e-9, "{found:?}");
+        assert!(normality(&[1.0, 1.0, 1.0]).d.is_nan() && normality(&[]).d.is_nan());
+    }
 
     #[test]
     fn p_is_that_of_scipy() {

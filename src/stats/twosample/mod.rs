@@ -15,7 +15,7 @@ mod spread;
 mod summary;
 
 pub use energy::{EnergyTest, energy_test};
-pub use kolmogorov::{KolmogorovSmirnov, kolmogorov_smirnov};
+pub use kolmogorov::{KolmogorovSmirnov, kolmogorov_smirnov, normality};
 pub use signed_rank::{SignedRank, signed_rank};
 pub use spread::{SpreadRatio, spread_ratio};
 pub use summary::{Summary, quantile};

@@ -237,10 +237,12 @@ pub enum Value {
         /// The arguments.
         arguments: Vec<Binding>,
     },
-    /// `learned "operators.gait"`
+    /// `learned "operators.gait"`, `as_published "operators.gait"`
     Learned {
         /// The file.
         file: Text,
+        /// Whether steps are chosen as published, too.
+        as_published: bool,
         /// Where all of it stands.
         span: Span,
     },

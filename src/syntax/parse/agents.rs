@@ -163,7 +163,9 @@ impl Builder<'_> {
             }
             Rule::learned => {
                 let span = self.span(&pair);
-                Some(Value::Learned { file: self.quoted(&Parts::of(pair).part(Rule::text)?), span })
+                let as_published = pair.as_str().starts_with("as_published");
+                let file = self.quoted(&Parts::of(pair).part(Rule::text)?);
+                Some(Value::Learned { file, as_published, span })
             }
             Rule::force => {
                 let mut parts = Parts::of(pair);

@@ -14,7 +14,8 @@ use crate::engine::traces::Trace;
 use crate::kernel::Voronoi;
 use crate::report::number::{count, counted, duration};
 use crate::report::phrase::settings;
-use crate::report::svg::frame::{Frame, part_of_page};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use moments::Moment;
 use plan::Plan;
@@ -131,7 +132,11 @@ fn speed_density(moments: &[Moment]) -> Option<Figure> {
          Voronoi cells (at most 1 m around each, cut at walls and obstacles), and the mean speed of the agents over \
          that second, along straight lines.{shown}"
     );
-    Some(Figure { caption, svg: part_of_page("Speed against density", vec![frame]), is_wide: true })
+    Some(Figure {
+        caption,
+        svg: Picture::charts("Speed against density", vec![frame]).part_of_page(),
+        is_wide: true,
+    })
 }
 
 // A figure: a drawing with its caption.

@@ -7,7 +7,8 @@ use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
 use crate::model::Line;
 use crate::report::number::{brief, counted, plain, thousandths};
-use crate::report::svg::frame::{Frame, part_of_page};
+use crate::report::svg::frame::Frame;
+use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 
 /// Letters of a name.
@@ -97,5 +98,9 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
         frame.band(&ends, 1);
     }
     frame.line(means, 3);
-    Figure { svg: part_of_page(&format!("N(t) through {name}"), vec![frame]), caption, is_wide: true }
+    Figure {
+        svg: Picture::charts(&format!("N(t) through {name}"), vec![frame]).part_of_page(),
+        caption,
+        is_wide: true,
+    }
 }

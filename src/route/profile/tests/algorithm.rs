@@ -10,7 +10,7 @@ fn shares(speed: f64, acceleration: f64, runs: u32) -> [f64; 7] {
     for index in 0..runs {
         let stream = stream(u64::from(index), 5);
         let draw = |k| stream.uniform(k);
-        match printed(&paper_path(), circle(speed, acceleration), 0.0, 0.0, draw).unwrap() {
+        match printed(&paper_path(), circle(speed, acceleration), 0.0, 0.0, None, draw).unwrap() {
             Printed::NeverReturns(NeverReturns::Start | NeverReturns::End) => counts[0] += 1,
             Printed::NeverReturns(NeverReturns::Pieces) => counts[1] += 1,
             Printed::NeverReturns(NeverReturns::Stuck) => {}
