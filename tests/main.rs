@@ -41,6 +41,7 @@ mod mutation;
 mod nesting;
 mod objects;
 mod pages;
+mod papers;
 mod perception;
 mod periodic;
 mod planned;

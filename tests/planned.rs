@@ -389,6 +389,12 @@ fn wrong_kinds_and_paths_are_refused_with_a_place_and_a_hint() {
         ("kind k: planned { limit speed = 1 m/s; limit acceleration = -1 m/s^2 }", "must be positive"),
         ("kind k: planned { limit speed = 1 m/s; pieces = 1 }", "a whole number from 2 to 64"),
         ("kind k: planned { limit speed = 1 m/s; pieces = uniform(2, 5) }", "a whole number from 2 to 64"),
+        ("kind k: planned { limit speed = 1 m/s; pieces = 0.4 }", "less than 2 for each metre"),
+        ("kind k: planned { limit speed = 1 m/s; pieces = 3 /m }", "less than 2 for each metre"),
+        ("kind k: planned { limit speed = 1 m/s; pieces = uniform(-1 /m, 1 /m) }", "`pieces` must be"),
+        ("kind k: planned { limit speed = 1 m/s; pieces = 0.4 /s }", "expected"),
+        ("kind k: planned { limit speed = 1 m/s; rounding = half }", "`shared` or `half_edges`"),
+        ("kind k: planned { limit speed = 1 m/s; avoid = rvo }", "`rvo`"),
         ("kind k: planned { limit speed = 1 m/s; roadmap = prm(sample = 5) }", "unknown argument of `prm`"),
         ("kind k: planned { limit speed = 1 m/s; roadmap = prm(samples = 1) }", "from 2 to 100000"),
         ("kind k: planned { limit speed = 1 m/s; roadmap = rrt(samples = 9) }", "`rrt` has no root"),
@@ -439,4 +445,65 @@ fn a_goal_may_be_a_point() {
     assert!((last - Vec2::new(30.0, 12.0)).norm() < 0.15, "{last:?}");
     let Route::Legs { legs, .. } = &model.scenario().agents[0].route else { panic!("legs") };
     assert!(matches!(&legs[0], smc::model::Leg::To(Goal::Point(_))));
+}
+
+#[test]
+fn reciprocal_avoidance_keeps_four_who_cross_apart() {
+    let crossing = |avoid: &str| {
+        model(&format!(
+            "horizon = 20 s
+            step = 0.04 s
+            scene {{
+              region around: rect (-1, -6) .. (11, 6)
+              point east: (10, 0)
+              point west: (0, 0)
+              point north: (5, 5)
+              point south: (5, -5)
+            }}
+            kind k: planned {{ radius = 0.25 m; limit speed = 1.5 m/s; profile = optimal; avoid = {avoid} }}
+            agent a: k {{ at = (0, 0); route = east }}
+            agent b: k {{ at = (10, 0); route = west }}
+            agent c: k {{ at = (5, -5); route = north }}
+            agent d: k {{ at = (5, 5); route = south }}"
+        ))
+    };
+    let names = ["a", "b", "c", "d"];
+    let found = crossing("orca");
+    let tracks = names.map(|name| track(&found, 0, name));
+    let mut least = f64::INFINITY;
+    for k in 0..tracks[0].len() {
+        for (i, one) in tracks.iter().enumerate() {
+            for other in &tracks[i + 1..] {
+                least = least.min((one[k].0 - other[k].0).norm());
+            }
+        }
+    }
+    assert!(least > 0.49, "{least}");
+    let ends = [Vec2::new(10.0, 0.0), Vec2::new(0.0, 0.0), Vec2::new(5.0, 5.0), Vec2::new(5.0, -5.0)];
+    for (walk, end) in tracks.iter().zip(ends) {
+        assert!((walk.last().unwrap().0 - end).norm() < 0.6, "{:?}", walk.last());
+        // Out of the way by half a metre or so, not by metres.
+        let way: f64 = walk.windows(2).map(|pair| (pair[1].0 - pair[0].0).norm()).sum();
+        assert!(way < 11.5, "{way} m");
+    }
+}
+
+#[test]
+fn longer_plans_have_more_pieces_unless_their_number_is_set() {
+    let knots = |pieces: &str, metres: u32| {
+        let text = format!(
+            "horizon = 60 s
+            step = 0.04 s
+            scene {{ region around: rect (-1, -3) .. (61, 3); point goal: ({metres}, 0) }}
+            kind k: planned {{ limit speed = 1.5 m/s; {pieces} }}
+            agent a: k {{ at = (0, 0); route = goal }}"
+        );
+        let place = crate::program::Place::new(&[("m.scn", &text)]);
+        let json = place.call(&["path", "m.scn", "--format", "json"]).json();
+        json["paths"][0]["knots"]["x"].as_array().unwrap().len() - 1
+    };
+    assert_eq!([10, 30, 60].map(|metres| knots("", metres)), [4, 13, 25]);
+    assert_eq!([10, 30].map(|metres| knots("pieces = 0.2 /m", metres)), [2, 6]);
+    assert_eq!([10, 30].map(|metres| knots("pieces = 6", metres)), [6, 6]);
+    assert!((2..=9).contains(&knots("pieces = uniform(0.1 /m, 0.3 /m)", 30)));
 }

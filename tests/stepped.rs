@@ -64,6 +64,54 @@ fn refused(text: &str, said: &str) {
 const ALONE: &str = "agent me: operator { at = uniform in start; route = desk }";
 
 #[test]
+fn people_share_a_goal_that_is_too_small_for_all() {
+    for goal in ["region spot: rect (7.7, 2.7) .. (8.3, 3.3)", "point spot: (8, 3)"] {
+        let bare: String =
+            HALL.lines().filter(|line| !line.contains("block")).map(|line| format!("{line}\n")).collect();
+        let text = bare.replace("scene {", &format!("scene {{ {goal}"));
+        let all = model(&format!(
+            "{text}
+            agents crowd[4]: operator {{ at = uniform in rect (0, 0) .. (2, 6); route = spot -> shelf }}"
+        ));
+        let query = "estimate P(F<=60 s (forall one in crowd: done(one))) by fixed(trials = 20)";
+        let report = ask(&all, query);
+        assert_eq!(report.results()[0].estimate, Some(1.0), "{goal}");
+    }
+}
+
+#[test]
+fn who_ends_a_hair_from_a_barrier_turns_and_goes_on() {
+    for room in [1e-4, 5e-4, 2e-3, 5e-3] {
+        let place = 4.0 - 0.25 - room;
+        let all = model(&format!(
+            "{}agent me: operator {{ at = uniform in start; route = beside -> start }}",
+            HALL.replace("scene {", &format!("scene {{ point beside: ({place}, 3)"))
+        ));
+        let query = "estimate P(F<=60 s (done(me))) by fixed(trials = 40)";
+        assert_eq!(ask(&all, query).results()[0].estimate, Some(1.0), "{room} m");
+    }
+}
+
+#[test]
+fn walks_on_open_floor_are_straight() {
+    // The largest distance of the hip from the line between start and goal, sway included.
+    let long = HALL.replace("(9, 3)", "(12, 3)").replace("(11,", "(15,");
+    let bare: String =
+        long.lines().filter(|line| !line.contains("block")).map(|line| format!("{line}\n")).collect();
+    let all = model(&format!(
+        "{}agent me: operator {{ at = (0, 3); route = far }}",
+        bare.replace("scene {", "scene { point far: (12, 3)")
+    ));
+    let mut worst: Vec<f64> = (0..60)
+        .map(|trial| {
+            track(&all, trial, "me").iter().map(|(place, _)| (place.y - 3.0).abs()).fold(0.0, f64::max)
+        })
+        .collect();
+    worst.sort_by(f64::total_cmp);
+    assert!(worst[30] < 0.06 && worst[54] < 0.12, "{} {}", worst[30], worst[54]);
+}
+
+#[test]
 fn the_root_goes_along_its_steps_whatever_pushes() {
     // A dense crowd that would push anybody else.
     let crowd = "kind adult: sfm preset helbing2000 { noise = 0.3 m/s }

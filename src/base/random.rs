@@ -177,7 +177,18 @@ pub const fn name_hash(name: &str) -> u64 {
     hash ^ hash >> 29
 }
 
-/// A stream read in order, for code that takes any generator of the `rand` crates.
+/// A stream read in order, for code that takes any generator of the `rand` crates, such as a driver of one's own that draws by a law of
+/// `rand_distr`. The draws belong to a trial and a person, so each trial can be repeated alone.
+///
+/// ```
+/// use rand_distr::{Distribution, Gamma};
+/// use smc_core::base::random::{Purpose, Sequence, Stream, TrialKey};
+///
+/// let key = TrialKey { seed: 7, index: 12, branch: 0 };
+/// let mut draws = Sequence::new(Stream::of(key, 3, Purpose::Test));
+/// let reaction: f64 = Gamma::new(4.0, 0.2).unwrap().sample(&mut draws);
+/// assert!(reaction > 0.0 && reaction < 10.0);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence {
     stream: Stream,

@@ -4,6 +4,7 @@ use crate::base::random::MOST_TRIALS;
 use crate::data::tracks::Velocity;
 use crate::engine::{Fault, Threads};
 use crate::library;
+use crate::replay::Whose;
 use crate::report::Format;
 use crate::report::svg::picture::{Paper, Picture};
 use crate::syntax::diagnostic::Diagnostic;
@@ -222,6 +223,14 @@ impl FromStr for Destination {
             return Err(format!("the name of the file is missing: write `{name}=FILE`"));
         }
         Ok(Self { format, file: file.map(PathBuf::from) })
+    }
+}
+
+/// An id, or `all`.
+pub(super) fn parse_user(text: &str) -> Result<Whose, String> {
+    match text {
+        "all" => Ok(Whose::Everybody),
+        _ => text.parse().map(Whose::Person).map_err(|_| format!("`{text}` is no id: write 367, or all")),
     }
 }
 

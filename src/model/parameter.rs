@@ -124,7 +124,10 @@ macro_rules! parameters {
             ..Description::$usual
         }),*];
 
-        impl Parameter {
+        /// Fewest pieces of a plan; less is a number of pieces for each metre.
+pub const FEWEST_PIECES: f64 = 2.0;
+
+impl Parameter {
             /// How many there are.
             pub const COUNT: usize = [$($name),*].len();
 
@@ -198,7 +201,7 @@ parameters! {
         PLAN { range: Range::NotNegative, default: Some(0.15) }
     Corner "corner" "largest turning radius of a plan at a corner" =
         PLAN { range: Range::NotNegative, dimension: Dimension::LENGTH, default: Some(1.5) }
-    Pieces "pieces" "in how many pieces the acceleration of a plan is constant (m0)" = PLAN { range: Range::Pieces }
+    Pieces "pieces" "in how many pieces the acceleration of a plan is constant (m0); below 2, how many for each metre" = PLAN { range: Range::Pieces }
     Replan "replan" "distance from the plan at which a new one is made" =
         PLAN { dimension: Dimension::LENGTH, default: Some(1.0) }
     Height "height" "stature of a walker that steps" =
@@ -268,7 +271,8 @@ impl Parameter {
                 Range::Positive => value > 0.0,
                 Range::NotNegative => value >= 0.0,
                 Range::Share => (0.0..=1.0).contains(&value),
-                Range::Pieces => (2.0..=64.0).contains(&value) && value.fract() == 0.0,
+                Range::Pieces if value < FEWEST_PIECES => value > 0.0,
+                Range::Pieces => value <= 64.0 && value.fract() == 0.0,
             }
     }
 
@@ -285,7 +289,10 @@ impl Parameter {
             Range::NotNegative | Range::Share if low < 0.0 => {
                 Some(format!("`{name}` cannot be negative{truncate}"))
             }
-            Range::Pieces if !(2.0..=64.0).contains(&low) || high > 64.0 || !law.is_whole() => {
+            Range::Pieces if low < FEWEST_PIECES && (low < 0.0 || high >= FEWEST_PIECES) => {
+                Some(format!("`{name}` must be more than 0 and less than 2 for each metre{truncate}"))
+            }
+            Range::Pieces if low >= FEWEST_PIECES && (high > 64.0 || !law.is_whole()) => {
                 Some(format!("`{name}` must be a whole number from 2 to 64"))
             }
             Range::Share if high > 1.0 => Some(format!("`{name}` must be between 0 and 1{truncate}")),

@@ -1,11 +1,14 @@
 //! How walkers of a planned kind make their plans (Li, Li, Ge 2019): all that is no parameter of a body.
 
 use super::agent::Goal;
-use super::law::{Family, Law};
+use super::law::Law;
 use super::parameter::Parameter;
 
 /// Share of the largest speed that somebody prefers unless their kind says otherwise.
 pub const PREFERRED: f64 = 0.85;
+
+/// Pieces of constant acceleration for each metre of recorded walks (`docs/planning.md`).
+pub const PIECES_PER_METRE: f64 = 0.42;
 
 /// How the walkers of a kind plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +21,10 @@ pub struct Planner {
     pub clearance: f64,
     /// How speeds along a path come about.
     pub profile: SpeedRule,
+    /// How much of an edge an arc at its end may take.
+    pub rounding: RoundingRule,
+    /// Whether walkers avoid others by velocity (ORCA) instead of force.
+    pub reciprocal: bool,
     /// Whether the preferred speed is a share of the largest one, drawn with it.
     pub speed_follows: bool,
 }
@@ -47,6 +54,29 @@ pub enum RoadmapRule {
         /// Probability that it grows towards the goal.
         bias: f64,
     },
+}
+
+/// How much of an edge of a path the arc at its end may take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RoundingRule {
+    /// Half of an edge between two corners, all of the first and the last one.
+    #[default]
+    Shared,
+    /// Half of every edge (Li, Li, Ge 2019, Figure 1).
+    HalfEdges,
+}
+
+impl RoundingRule {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Shared, Self::HalfEdges];
+
+    /// Its name in a scenario.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Shared => "shared",
+            Self::HalfEdges => "half_edges",
+        }
+    }
 }
 
 /// How speeds along a path come about.
@@ -84,11 +114,7 @@ impl Default for RoadmapRule {
 pub fn planned_default(parameter: Parameter, limit: Option<&Law>) -> Option<Law> {
     match parameter {
         Parameter::Radius => Some(Law::Constant(0.25)),
-        Parameter::Pieces => Some(Law::Random {
-            family: Family::UniformInt { low: 3, high: 8 },
-            low: f64::NEG_INFINITY,
-            high: f64::INFINITY,
-        }),
+        Parameter::Pieces => Some(Law::Constant(PIECES_PER_METRE)),
         Parameter::Speed => limit?.scaled(PREFERRED),
         _ => None,
     }

@@ -2,14 +2,17 @@
 
 use crate::advise::{Advice, Walked};
 use crate::base::geometry::Vec2;
+use crate::base::math::median;
 use crate::data::tracks::Batch;
 use crate::engine::outcome::{CallResult, Interval};
 use crate::engine::traces::{Traces, Walk, recorded};
 use crate::model::Scene;
 use crate::report::html::{Page, Table};
-use crate::report::number::{count, interval, plain, thousandths};
+use crate::report::number::{count, counted, interval, plain, thousandths};
+use crate::stats::bootstrap::{Bootstrap, DRAWS};
 use crate::syntax::source::Source;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// Whoever is unseen for longer is another walk, s.
 const LONGEST: f64 = 2.0;
@@ -33,6 +36,71 @@ pub struct Advised {
     pub followed: Vec<(f64, Vec2)>,
     /// What the user did as advised and as recorded, where the user followed.
     pub end: Option<[Walked; 2]>,
+}
+
+/// A user of a recording who walked as advised.
+#[derive(Clone, Copy, Debug)]
+pub struct User {
+    /// Who.
+    pub id: u32,
+    /// What this person did as advised.
+    pub advised: Walked,
+    /// What this person did as recorded.
+    pub recorded: Walked,
+    /// Cycles, and those with a move.
+    pub cycles: [u64; 2],
+}
+
+/// A number of a walk.
+type Measure = (&'static str, fn(&Walked) -> Option<f64>);
+
+/// What the advice is worth: medians over users with intervals by bootstrap over them.
+pub fn table_of_users(users: &[User], seed: u64) -> String {
+    let bootstrap = Bootstrap { persons: users.len(), draws: DRAWS, seed, confidence: 0.95 };
+    let mut out = format!("{} of the recording\n\n", counted(users.len() as u64, "user"));
+    let _ = writeln!(
+        out,
+        "{:<28}{:>10}{:>10}{:>14}  95 % interval",
+        "median", "recorded", "advised", "difference"
+    );
+    let least = |walked: &Walked| walked.least_distance;
+    let measures: [Measure; 3] = [
+        ("least distance (m)", least),
+        ("way (m)", |walked| Some(walked.length)),
+        ("time (s)", |walked| Some(walked.time)),
+    ];
+    for (name, of) in measures {
+        let pairs: Vec<Option<[f64; 2]>> =
+            users.iter().map(|user| Some([of(&user.recorded)?, of(&user.advised)?])).collect();
+        let middle = |counts: &[u32], of: &dyn Fn([f64; 2]) -> f64| {
+            let all = pairs.iter().zip(counts).filter_map(|(pair, count)| Some((of((*pair)?), *count)));
+            median(all.flat_map(|(value, count)| std::iter::repeat_n(value, count as usize)))
+        };
+        let once = vec![1; users.len()];
+        let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
+        let difference = bootstrap.estimate(|counts| middle(counts, &|[before, after]| after - before));
+        let interval = difference.and_then(|one| one.interval);
+        let _ = writeln!(
+            out,
+            "{name:<28}{:>10}{:>10}{:>14}  {}",
+            shown(middle(&once, &|[before, _]| before)),
+            shown(middle(&once, &|[_, after]| after)),
+            shown(difference.map(|one| one.value)),
+            interval.map_or_else(|| "-".to_owned(), |[low, high]| format!("{low:.2} to {high:.2}"))
+        );
+    }
+    let nearer = users.iter().filter(|user| least(&user.advised) < least(&user.recorded)).count();
+    let longer: Vec<f64> = users.iter().map(|user| user.advised.length / user.recorded.length).collect();
+    let [cycles, advised] = [0, 1].map(|k| users.iter().map(|user| user.cycles[k]).sum::<u64>());
+    let _ = writeln!(
+        out,
+        "\n{nearer} of {} came nearer to somebody; the way is {:.1} % longer in the median; a move was advised in {:.1} % of {} cycles.\nWho walked with the user as recorded does not count in the least distance.",
+        users.len(),
+        100.0 * (median(longer).unwrap_or(1.0) - 1.0),
+        100.0 * advised as f64 / cycles.max(1) as f64,
+        count(cycles)
+    );
+    out
 }
 
 /// The page.

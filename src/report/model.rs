@@ -212,10 +212,12 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     if let Some(planner) = &agent.body.planner {
         let _ = writeln!(
             out,
-            "      roadmap {}, clearance {} m, profile {}{}",
+            "      roadmap {}, clearance {} m, profile {}, rounding {}{}{}",
             roadmap(scenario, &planner.roadmap),
             number(planner.clearance),
             planner.profile.name(),
+            planner.rounding.name(),
+            if planner.reciprocal { ", others avoided by orca" } else { "" },
             if planner.speed_follows { ", speed drawn with its limit" } else { "" }
         );
     }

@@ -107,6 +107,26 @@ fn every_line_fits_the_schema() {
 }
 
 #[test]
+fn everybody_in_turn_follows_and_a_table_tells_what_it_is_worth() {
+    let said = square(&["40", "--follow", "--user", "all"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    for part in
+        ["5 users of the recording\n", "\nleast distance (m) ", "\nway (m) ", " came nearer to somebody; "]
+    {
+        assert!(said.out.contains(part), "{part}\n{}", said.out);
+    }
+    assert_eq!(square(&["40", "--follow", "--user", "all", "-j", "1"]).out, said.out);
+    for (words, wanted) in [
+        (&["40", "--user", "all"][..], "compares advised with recorded walks"),
+        (&["40", "--user", "all", "--follow", "--from", "19s"], "nobody is seen for 4 s"),
+        (&["40", "--user", "every"], "is no id: write 367, or all"),
+    ] {
+        let said = square(words);
+        assert!(said.code == Some(2) && said.err.contains(wanted), "{words:?}\n{}", said.err);
+    }
+}
+
+#[test]
 fn bad_late_and_repeated_lines_are_left_out() {
     let input = r#"{"t":0,"seen":[{"x":0,"y":0,"id":2}]}
 {"t":0.4,"seen":[{"x":0.4,"y":0,"id":2},{"x":3,"y":0}]}

@@ -94,7 +94,8 @@ fn a_wall_keeps_people_on_their_side() {
     assert_eq!(traces(&["--motion", "social-force"]), 1);
     assert_eq!(traces(&["--motion", "social-force", "--scene", "scene.scn"]), 2);
     assert_eq!(traces(&["--motion", "social-force", "--scene", "scene.scn", "--kind", "slim"]), 2);
-    let fed = place.fed(&["infer", "a.csv", "--motion", "social-force", "--scene", "-", "--format", "json"], SCENE);
+    let fed =
+        place.fed(&["infer", "a.csv", "--motion", "social-force", "--scene", "-", "--format", "json"], SCENE);
     assert_eq!((fed.code, fed.json()["parameters"]["scene"].as_str()), (Some(0), Some("<stdin>")));
 }
 

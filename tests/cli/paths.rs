@@ -110,6 +110,14 @@ fn way_points_are_rounded() {
     let json: serde_json::Value = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{}", said.err));
     let length = json["paths"][0]["length"].as_f64().unwrap();
     assert!((length - (16.0 + std::f64::consts::PI)).abs() < 1e-9, "{length}");
+    // As in the paper an arc takes at most half of each edge: 5 m here, where 7 m were free.
+    let longest = |words: &[&str]| {
+        let words =
+            [&["path", "--waypoints", "corners.csv", "--corner", "7m", "--format", "json"], words].concat();
+        let json = place.call(&words).json();
+        json["paths"][0]["pieces"][1]["radius"].as_f64().unwrap()
+    };
+    assert!((longest(&[]) - 7.0).abs() < 1e-9 && (longest(&["--half-edges"]) - 5.0).abs() < 1e-9);
     let said = place.call(&["path", "--waypoints", "wrong.csv"]);
     assert_eq!(said.code, Some(2));
     assert!(said.err.contains("line 3"), "{}", said.err);

@@ -2,15 +2,17 @@
 
 mod replay;
 mod stream;
+mod users;
 
 use super::terminal::{Colors, print_to_reader};
-use super::values::{Cores, Model, parse_count, parse_duration, parse_moment, threads};
+use super::values::{Cores, Model, parse_count, parse_duration, parse_moment, parse_user, threads};
 use super::{complaint, inputs, output, page};
-use crate::advise::{Adviser, Advising, role};
+use crate::advise::{Advice, Adviser, Advising, role};
 use crate::data::tracks::{Batch, Velocity};
 use crate::engine::{Budget, Threads};
 use crate::library::Parsed;
 use crate::model::Scene;
+use crate::replay::Whose;
 use crate::report::advised::{Advised, to_page};
 use crate::report::{ExitCode as Exit, advice};
 use crate::syntax::diagnostic::Diagnostic;
@@ -42,20 +44,25 @@ fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<
         );
         return Err(complaint::argument("`--report` needs a recording, and a live stream is none", hint));
     }
+    if let (Some(Whose::Everybody), false) = (arguments.user, arguments.follow) {
+        let hint = "add `--follow --tracks NAME`, or name one person";
+        return Err(complaint::argument("`--user all` compares advised with recorded walks", hint));
+    }
     let role = role(&parsed.scenario)?;
     let threads = threads(arguments.cores.threads)?;
     let recording = replayed.map(|name| replay::batches(parsed, name, arguments)).transpose()?;
-    let options = Advising {
-        seed: arguments.seed,
-        user: arguments.user,
-        range: arguments.range,
-        only: arguments.only.clone(),
-    };
+    if let (Some(Whose::Everybody), Some(recording)) = (arguments.user, &recording) {
+        let done = users::everybody(arguments, parsed, &threads, recording);
+        return Ok(complaint::end(done.map(|()| Exit::Success), &parsed.inputs.sources, colors));
+    }
+    let user = if let Some(Whose::Person(id)) = arguments.user { Some(id) } else { None };
+    let options =
+        Advising { seed: arguments.seed, user, range: arguments.range, only: arguments.only.clone() };
     let adviser = Adviser::new(parsed.input(), role, options);
     let mut caller =
-        Caller { arguments, adviser, threads, late: Default::default(), shown: Advised::default() };
+        Caller { arguments, adviser, threads: &threads, late: Default::default(), shown: Advised::default() };
     let done = match recording {
-        Some(recording) => replay::run(&mut caller, &recording),
+        Some(recording) => replay::run(&mut caller, &recording, arguments.span(), true).map(|_| ()),
         None => stream::run(&mut caller),
     };
     let exit = complaint::end(done.map(|()| Exit::Success), &parsed.inputs.sources, colors);
@@ -76,7 +83,7 @@ fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<
 struct Caller<'a> {
     arguments: &'a AdviseCommand,
     adviser: Adviser<'a>,
-    threads: Threads,
+    threads: &'a Threads,
     /// By how much the last cycles passed the time for their trials.
     late: [Duration; 8],
     /// What the page of the call shows; gathered only for one.
@@ -86,6 +93,16 @@ struct Caller<'a> {
 impl Caller<'_> {
     /// Answers a complete cycle, with notes on what came before it; false where nobody reads any more.
     fn answer(&mut self, batches: &[Batch], notes: &mut Vec<String>) -> Result<bool, Vec<Diagnostic>> {
+        let (found, used) = self.ask(batches, notes)?;
+        Ok(self.tell(found, used)?)
+    }
+
+    /// The advice of a complete cycle, and how long it took.
+    fn ask(
+        &mut self,
+        batches: &[Batch],
+        notes: &mut Vec<String>,
+    ) -> Result<(Advice, Duration), Vec<Diagnostic>> {
         #[allow(clippy::disallowed_methods, reason = "the command line keeps deadlines")]
         let started = Instant::now();
         // The second largest: one late cycle is no sign that the next ones will be.
@@ -95,18 +112,23 @@ impl Caller<'_> {
         let limit = self.arguments.deadline.map(|deadline| deadline.saturating_sub(margin).max(deadline / 2));
         let mut budget = Budget::new(DEFAULT_TRIALS, limit);
         budget.max_total = self.arguments.total_trials;
-        let mut found = self.adviser.advise(batches, &self.threads, &budget)?;
+        let mut found = self.adviser.advise(batches, self.threads, &budget)?;
         found.notes.splice(0..0, std::mem::take(notes));
         // Nothing depends on the clock where the number of trials is given.
         if let (Some(limit), None) = (limit, self.arguments.total_trials) {
             let place = found.cycle as usize % self.late.len();
             self.late[place] = started.elapsed().saturating_sub(limit);
         }
-        let line = advice::line(&found, self.arguments.velocity(), started.elapsed().as_secs_f64() * 1e3);
+        Ok((found, started.elapsed()))
+    }
+
+    /// Writes the line of a cycle; false where nobody reads any more.
+    fn tell(&mut self, found: Advice, used: Duration) -> Result<bool, Diagnostic> {
+        let line = advice::line(&found, self.arguments.velocity(), used.as_secs_f64() * 1e3);
         if self.arguments.report.is_some() {
             self.shown.cycles.push(found);
         }
-        Ok(print_to_reader(&line)?)
+        print_to_reader(&line)
     }
 
     /// Whether velocities are differences of positions.
@@ -147,9 +169,10 @@ pub(in crate::cli) struct AdviseCommand {
     /// Also write a self-contained HTML page that plays the recording, with the advice of each cycle.
     #[arg(long, value_name = "FILE.html")]
     pub(in crate::cli) report: Option<PathBuf>,
-    /// Id of the user, instead of the id in the model.
-    #[arg(long, value_name = "ID")]
-    pub(in crate::cli) user: Option<u32>,
+    /// Id of the user, instead of the id in the model. With `--follow`, `all` asks for each person who walks in turn, and tells what
+    /// the advice is worth in a table.
+    #[arg(long, value_name = "ID", value_parser = parse_user)]
+    pub(in crate::cli) user: Option<Whose>,
     /// Leave out people who are farther from the user than this, in metres: `12m`.
     #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
     pub(in crate::cli) range: Option<f64>,
@@ -171,6 +194,11 @@ pub(in crate::cli) struct AdviseCommand {
 }
 
 impl AdviseCommand {
+    /// First and last time of a replay, s.
+    fn span(&self) -> (f64, f64) {
+        (self.from.unwrap_or(f64::NEG_INFINITY), self.to.unwrap_or(f64::INFINITY))
+    }
+
     /// Which velocities are used.
     fn velocity(&self) -> Velocity {
         self.model.velocity.unwrap_or(Velocity::Seen)

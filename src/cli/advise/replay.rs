@@ -1,7 +1,7 @@
 //! Batches from a recording that the model names.
 
 use super::{AdviseCommand, Caller};
-use crate::advise::Walked;
+use crate::advise::{Status, Walked};
 use crate::base::geometry::Vec2;
 use crate::cli::complaint;
 use crate::cli::terminal::print_to_reader;
@@ -10,6 +10,10 @@ use crate::library::Parsed;
 use crate::replay::source;
 use crate::report::advice;
 use crate::syntax::diagnostic::Diagnostic;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Who walks with somebody is nearer than this, m.
+const NEAR: f64 = 1.5;
 
 /// The batches of the tracks of a name in a model.
 pub(super) fn batches(
@@ -45,9 +49,11 @@ struct Way {
 }
 
 impl Way {
-    fn at(&mut self, cycle: &[Batch], user: u32, position: Vec2) {
+    /// The user, and the company who does not count, at a place.
+    fn at(&mut self, cycle: &[Batch], (user, company): (u32, &BTreeSet<u32>), position: Vec2) {
         self.points.push((cycle[0].time, position));
-        let others = cycle.iter().flat_map(|batch| &batch.seen).filter(|one| one.id != Some(user));
+        let others = cycle.iter().flat_map(|batch| &batch.seen);
+        let others = others.filter(|one| one.id.is_none_or(|id| id != user && !company.contains(&id)));
         let distances = others.map(|one| (one.position - position).norm());
         self.least = distances.chain(self.least).reduce(|a, b| if b < a { b } else { a });
     }
@@ -60,67 +66,113 @@ impl Way {
     }
 }
 
-/// Replays batches; those before the first time only continue traces.
-pub(super) fn run(caller: &mut Caller<'_>, batches: &[Batch]) -> Result<(), Vec<Diagnostic>> {
+/// What a replay with a user who follows the advice gave.
+pub(super) struct Followed {
+    /// What the user did as advised, and as recorded.
+    pub(super) walked: [Walked; 2],
+    /// Cycles, and those with a move.
+    pub(super) cycles: [u64; 2],
+}
+
+/// Where a person was in batches.
+pub(super) fn places(batches: &[Batch], user: u32) -> Vec<(f64, Vec2)> {
+    let mut found: Vec<(f64, Vec2)> = Vec::new();
+    for batch in batches {
+        for one in batch.seen.iter().filter(|one| one.id == Some(user)) {
+            // Several sensors may see somebody at one time.
+            if found.last().is_none_or(|(time, _)| *time < batch.time) {
+                found.push((batch.time, one.position));
+            }
+        }
+    }
+    found
+}
+
+/// Who walked with a person, as recorded: nearer than 1.5 m in most of the instants.
+fn company(batches: &[Batch], own: &[(f64, Vec2)]) -> BTreeSet<u32> {
+    let mut near: BTreeMap<u32, usize> = BTreeMap::new();
+    let mut instants = own.iter().peekable();
+    for batch in batches {
+        while instants.next_if(|(time, _)| *time < batch.time).is_some() {}
+        let Some((_, place)) = instants.peek().filter(|(time, _)| *time == batch.time) else { continue };
+        for id in
+            batch.seen.iter().filter(|one| (one.position - place).norm() < NEAR).filter_map(|one| one.id)
+        {
+            *near.entry(id).or_default() += 1;
+        }
+    }
+    near.into_iter().filter(|(_, count)| 2 * count > own.len()).map(|(id, _)| id).collect()
+}
+
+/// Replays batches; those before the first time only continue traces. With `is_told`, a line for each cycle is written.
+pub(super) fn run(
+    caller: &mut Caller<'_>,
+    batches: &[Batch],
+    (from, to): (f64, f64),
+    is_told: bool,
+) -> Result<Followed, Vec<Diagnostic>> {
     let arguments = caller.arguments;
     let user = caller.adviser.user();
-    if !batches.iter().flat_map(|batch| &batch.seen).any(|one| one.id == Some(user)) {
+    let own = places(batches, user);
+    if own.is_empty() {
         let said = format!("person {user} is not in the recording");
         return Err(complaint::argument(said, "choose another `--user`").into());
     }
-    let from = arguments.from.unwrap_or(f64::NEG_INFINITY) - 1e-6;
-    let to = arguments.to.unwrap_or(f64::INFINITY) + 1e-6;
+    let company = company(batches, &own);
     let mut notes = Vec::new();
     let (mut advised, mut recorded) = (Way::default(), Way::default());
+    let mut counted = [0, 0];
     let mut before: Option<f64> = None;
     let cycles = batches.chunk_by(|a, b| a.time == b.time);
-    for cycle in cycles.take_while(|cycle| cycle[0].time <= to) {
+    for cycle in cycles.take_while(|cycle| cycle[0].time <= to + 1e-6) {
         let batch = &cycle[0];
         let mut shown = cycle.to_vec();
         if arguments.anonymous {
             let all = shown.iter_mut().flat_map(|batch| &mut batch.seen);
             all.filter(|one| one.id != Some(user)).for_each(|one| one.id = None);
         }
-        if batch.time < from {
+        if batch.time < from - 1e-6 {
             let _ = caller.adviser.watch(&shown);
             continue;
         }
-        let own = cycle
-            .iter()
-            .flat_map(|batch| &batch.seen)
-            .find(|one| one.id == Some(user))
-            .map(|one| one.position);
-        if let (true, Some(own)) = (arguments.follow, own) {
+        let now = own.iter().position(|(time, _)| *time == batch.time);
+        if let (true, Some(now)) = (arguments.follow, now) {
             let walked = before.and_then(|before| caller.adviser.walked(batch.time - before));
-            let pace = recorded.points.last().map(|(time, last)| (own - last).norm() / (batch.time - time));
-            let place = walked.map_or(own, |(place, _)| place);
-            // Whoever is jostled does not walk faster from then on: the pace is the recorded one.
+            let here = own[now].1;
+            let pace = recorded.points.last().map(|(time, last)| (here - last).norm() / (batch.time - time));
+            let place = walked.map_or(here, |(place, _)| place);
+            // Whoever is jostled does not walk faster from then on: the pace is the recorded one. Who has just come knows the
+            // own velocity.
+            let next = own.get(now + 1).map(|(time, next)| (next - here) / (time - batch.time));
             let velocity = walked.zip(pace).map(|((_, velocity), pace)| {
                 let speed = velocity.norm();
                 if speed > 0.0 { velocity * (pace / speed) } else { velocity }
             });
+            let velocity = velocity.or(next.filter(|_| before.is_none()));
             let all = shown.iter_mut().flat_map(|batch| &mut batch.seen);
             for one in all.filter(|one| one.id == Some(user)) {
                 one.position = place;
                 one.velocity = velocity.or(one.velocity);
             }
-            advised.at(cycle, user, place);
-            recorded.at(cycle, user, own);
+            advised.at(cycle, (user, &company), place);
+            recorded.at(cycle, (user, &company), here);
         }
         if arguments.report.is_some() {
             caller.shown.batches.extend_from_slice(cycle);
         }
         before = Some(batch.time);
-        if !caller.answer(&shown, &mut notes)? {
-            return Ok(());
+        let (found, used) = caller.ask(&shown, &mut notes)?;
+        counted = [counted[0] + 1, counted[1] + u64::from(found.status == Status::Advice)];
+        if is_told && !caller.tell(found, used)? {
+            break;
         }
     }
-    if arguments.follow {
-        let [as_advised, as_recorded] = [advised.walked(), recorded.walked()];
-        let line = advice::end(&as_advised, &as_recorded);
-        caller.shown.end = Some([as_advised, as_recorded]);
+    let walked = [advised.walked(), recorded.walked()];
+    if arguments.follow && is_told {
+        let line = advice::end(&walked[0], &walked[1]);
+        caller.shown.end = Some(walked);
         caller.shown.followed = advised.points;
         print_to_reader(&line)?;
     }
-    Ok(())
+    Ok(Followed { walked, cycles: counted })
 }

@@ -54,6 +54,9 @@ pub(in crate::cli) struct PathCommand {
     /// Largest turning radius at way points.
     #[arg(long, default_value = "1.5m", value_name = "LENGTH", value_parser = parse_length)]
     pub(in crate::cli) corner: f64,
+    /// Arcs at way points take at most half of each edge, as in the paper; else all of the first and the last one.
+    #[arg(long, requires = "waypoints")]
+    pub(in crate::cli) half_edges: bool,
     /// Largest speed along a shape.
     #[arg(long, default_value = "1.5m/s", value_name = "SPEED", value_parser = parse_speed)]
     pub(in crate::cli) speed: f64,

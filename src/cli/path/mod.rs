@@ -199,13 +199,17 @@ fn wish<'a>(
     let Route::Legs { legs, .. } = &agent.route else { return None };
     let slot = state.slot(id.0 as usize, 0);
     let of = |parameter: Parameter| slot.of(&state.bodies[parameter]);
+    let planner = agent.body.planner.as_ref()?;
     Some(Wish {
         scenario,
         agent: id,
         address: (key, agent.entity, 0),
         motion: (state.position(slot), state.velocity(slot)),
         legs,
-        speeds: Speeds::new(of, of(Parameter::Speed), agent.body.planner.as_ref()?.profile),
+        speeds: Speeds {
+            rounding: planner.rounding,
+            ..Speeds::new(of, of(Parameter::Speed), planner.profile)
+        },
         path,
     })
 }

@@ -6,9 +6,10 @@ use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::cli::complaint::argument;
 use crate::cli::inputs;
 use crate::model::Sight;
+use crate::model::planner::{PIECES_PER_METRE, RoundingRule};
 use crate::report::paths::{self, PlannedPath, PrintedRun};
-use crate::route::path::{Path, PathShape, ShapeError, round};
-use crate::route::planner::{Course, stretches};
+use crate::route::path::{Path, PathShape, ShapeError, round_by};
+use crate::route::planner::{Course, pieces_of, stretches};
 use crate::route::profile::{
     Infeasible, Law, Limits, Optimum, Printed, Region, Stretch, Varied, Variety, optimal, printed, region,
     varied,
@@ -22,8 +23,6 @@ const FLOOR: f64 = 0.1;
 const DRAWS: u32 = 1 << 10;
 /// Most runs of the printed algorithm that are told one by one.
 const SHOWN: usize = 10;
-/// Pieces of constant acceleration for each metre of recorded walks (`docs/planning.md`).
-const PER_METRE: f64 = 0.42;
 
 /// No profile keeps the limits.
 fn wrong(error: Infeasible) -> Diagnostic {
@@ -42,7 +41,8 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
         }
         (None, Some(file)) => {
             let corners = way_points(file)?;
-            let path = round(&corners, arguments.corner, 0.0, &Sight::default());
+            let rule = if arguments.half_edges { RoundingRule::HalfEdges } else { RoundingRule::Shared };
+            let path = round_by(&corners, (arguments.corner, rule), 0.0, &Sight::default());
             (stretches(&path), path, corners)
         }
         (None, None) => (Vec::new(), Path::empty(Vec2::zeros()), Vec::new()),
@@ -84,7 +84,7 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
     };
     let alone = || Course { path: path.clone(), optimum: optimum.clone(), varied: None };
     match (arguments.format, arguments.figure) {
-        (PathFormat::Text, _) => tell_shape(arguments, &optimum, limits, &courses, &runs),
+        (PathFormat::Text, _) => Ok(tell_shape(arguments, &optimum, limits, &courses, &runs)),
         (PathFormat::Svg, figure) => {
             let picture = match figure {
                 Figure::Phase => {
@@ -147,8 +147,9 @@ fn profile(
         SpeedLaw::Varied => Law::Preferred { speed: 0.85 * limits.speed, spread: 0.15 },
     };
     let length: f64 = stretches.iter().map(|stretch| stretch.length).sum();
-    let pieces = arguments.pieces.map_or((PER_METRE * length).round().clamp(2.0, 64.0), f64::from);
-    let variety = Variety { pieces: pieces as usize, floor: FLOOR, law };
+    let by_length = || pieces_of(PIECES_PER_METRE, length);
+    let pieces = arguments.pieces.map_or_else(by_length, |pieces| pieces as usize);
+    let variety = Variety { pieces, floor: FLOOR, law };
     let stream = stream(arguments);
     let draw = |knot: u32| stream.uniform_pair(number * DRAWS + knot % DRAWS);
     let found = varied(stretches, limits, arguments.start_speed, arguments.end_speed, &variety, draw)?;
@@ -162,7 +163,7 @@ fn tell_shape(
     limits: Limits,
     courses: &[Course],
     runs: &[PrintedRun],
-) -> Result<String, Diagnostic> {
+) -> String {
     let speeds: Vec<String> = optimum.node_speeds().map(|speed| format!("{speed:.6}")).collect();
     let mut out = format!("optimal_s {:.17}\n", optimum.duration());
     let _ = writeln!(out, "length {:.6} m\nspeeds at the joints {} m/s", optimum.length(), speeds.join(", "));
@@ -200,7 +201,7 @@ fn tell_shape(
             if courses.len() > 10 { ", …" } else { "" }
         );
     }
-    Ok(out)
+    out
 }
 
 /// The way points of a CSV file with the columns `x` and `y`, m.

@@ -1,7 +1,7 @@
 //! The options of `smc monitor`, `smc evaluate` and `smc fit`.
 
 use crate::cli::values::{
-    Cores, Model, Print, TextFormat, parse_count, parse_duration, parse_moment, parse_share,
+    Cores, Model, Print, TextFormat, parse_count, parse_duration, parse_moment, parse_share, parse_user,
 };
 use crate::replay::{Beyond, Whose};
 use clap::{Args, ValueEnum};
@@ -245,11 +245,4 @@ pub(super) enum EvaluateFormat {
     Csv,
     /// A reliability diagram.
     Svg,
-}
-
-fn parse_user(text: &str) -> Result<Whose, String> {
-    match text {
-        "all" => Ok(Whose::Everybody),
-        _ => text.parse().map(Whose::Person).map_err(|_| format!("`{text}` is no id: write 367, or all")),
-    }
 }

@@ -1,12 +1,12 @@
 //! A kind of agents as far as it is known, with all that planned kinds have beside the parameters of a body.
 
 use crate::compile::presets;
-use crate::model::planner::{RoadmapRule, SpeedRule, planned_default};
+use crate::model::planner::{RoadmapRule, RoundingRule, SpeedRule, planned_default};
 use crate::model::stepper::stepped_default;
 use crate::model::{self, GaitRule, Law, Parameter, SearchRule};
 
 /// The fields.
-pub(crate) const FIELDS: [&str; 4] = ["limit acceleration", "roadmap", "profile", "avoid"];
+pub(crate) const FIELDS: [&str; 5] = ["limit acceleration", "roadmap", "profile", "rounding", "avoid"];
 /// The preset of the force that planned walkers feel unless their kind says otherwise.
 pub(crate) const FORCE: &str = "helbing2000";
 
@@ -16,11 +16,14 @@ pub(crate) struct Planning {
     pub(crate) roadmap: RoadmapRule,
     pub(crate) clearance: f64,
     pub(crate) profile: SpeedRule,
+    pub(crate) rounding: RoundingRule,
+    pub(crate) reciprocal: bool,
 }
 
 impl Default for Planning {
     fn default() -> Self {
-        Self { roadmap: RoadmapRule::default(), clearance: 0.2, profile: SpeedRule::Varied }
+        let (roadmap, rounding) = (RoadmapRule::default(), RoundingRule::default());
+        Self { roadmap, clearance: 0.2, profile: SpeedRule::Varied, rounding, reciprocal: false }
     }
 }
 

@@ -1,10 +1,10 @@
 //! Values of parameters: constants and distributions.
 
 use crate::base::decimal::Decimal;
-use crate::compile::context::{Context, Locals, Lowered, symbols::unknown};
+use crate::compile::context::{Context, Locals, Lowered, symbols::unknown, typed::Typed};
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::{builtin::DISTRIBUTIONS, laws};
-use crate::model::Parameter;
+use crate::model::parameter::{self, Parameter};
 use crate::model::stepper::stature;
 use crate::model::{Family, Law};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
@@ -92,7 +92,16 @@ pub(crate) fn parameter_law(
     value: &Value,
     locals: &Locals,
 ) -> Lowered<Law> {
-    let mut law = laws::law(context, value, parameter.description().dimension, locals)?;
+    let per_metre = parameter == Parameter::Pieces && is_per_metre(context, value, locals);
+    let dimension = if per_metre { PER_METRE } else { parameter.description().dimension };
+    let mut law = laws::law(context, value, dimension, locals)?;
+    let is_few = parameter == Parameter::Pieces && law.bounds().0 < parameter::FEWEST_PIECES;
+    if per_metre != is_few {
+        let said =
+            "`pieces` must be a whole number from 2 to 64, or more than 0 and less than 2 for each metre";
+        return context.report(error!(E0405, value.span(), "{said}";
+            hint: "write for example `pieces = 6`, or `pieces = 0.42 /m` for 4.2 pieces in 10 m"));
+    }
     if parameter == Parameter::Height {
         law = stature(law);
     }
@@ -100,6 +109,19 @@ pub(crate) fn parameter_law(
         None => Ok(law),
         Some(reason) => context.report(error!(E0405, value.span(), "{reason}")),
     }
+}
+
+/// Of a number for each metre.
+const PER_METRE: Dimension = Dimension([0, -1, 0, 0, 0]);
+
+/// Whether a number, or the first argument of a distribution or its factor, is one for each metre.
+fn is_per_metre(context: &mut Context<'_>, value: &Value, locals: &Locals) -> bool {
+    let (Value::Plain(expr) | Value::Truncated { law: expr, .. }) = value else { return false };
+    let drawn = distribution(expr);
+    let factor = drawn.as_ref().and_then(Drawn::factor);
+    let first = drawn.and_then(|drawn| drawn.arguments.first());
+    let measured = factor.as_ref().or(first).unwrap_or(expr);
+    matches!(context.lower(measured, locals), Ok(Typed::Number(number)) if number.dimension == PER_METRE)
 }
 
 fn validated(

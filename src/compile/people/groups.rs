@@ -210,7 +210,16 @@ fn seen_together<'a>(
         return;
     }
     let bodies: Vec<(Sighting, Option<Particle>)> = match decl.particle {
-        Some(_) => parties.iter().map(|party| together(party, common, &context.scene.barriers)).collect(),
+        Some(_) => {
+            // Between people on both sides of a lamp post is the lamp post.
+            let middles = parties.iter().map(|party| together(party)).collect();
+            let radius = &common.body[Parameter::Radius];
+            let middles = recordings::onto_rims(context, recorded, middles, radius);
+            let body = |(party, middle): (&Vec<Sighting>, Sighting)| {
+                (middle, Some(as_one(party, &middle, common, &context.scene.barriers)))
+            };
+            parties.iter().zip(middles).map(body).collect()
+        }
         None => parties.iter().flatten().map(|one| (*one, None)).collect(),
     };
     let is_set = decl.plural || decl.particle.is_none();
@@ -279,21 +288,23 @@ fn agree(party: &mut [Sighting]) {
     }
 }
 
-/// People who are seen together as one body: at their mean, with their mean velocity, as wide as they stand and barriers
-/// let them.
-fn together(party: &[Sighting], common: &Common<'_>, barriers: &[Barrier]) -> (Sighting, Option<Particle>) {
+/// People who are seen together as one: at their mean, with their mean velocity.
+fn together(party: &[Sighting]) -> Sighting {
     let count = party.len() as f64;
     let mean = |of: fn(&Sighting) -> Vec2| party.iter().map(of).sum::<Vec2>() / count;
-    let position = mean(|one| one.position);
-    let square = party.iter().map(|one| (one.position - position).norm_squared()).sum::<f64>() / count;
-    let sighting = Sighting {
+    Sighting {
         id: party[0].id,
-        position,
+        position: mean(|one| one.position),
         velocity: mean(|one| one.velocity),
         driving: mean(|one| one.driving),
         density: party.iter().map(|one| one.density).sum::<f64>() / count,
-    };
-    let distances = barriers.iter().map(|barrier| barrier.obstacle.distance(position));
+    }
+}
+
+/// Their body around a place: as wide as they stand and barriers let them.
+fn as_one(party: &[Sighting], middle: &Sighting, common: &Common<'_>, barriers: &[Barrier]) -> Particle {
+    let square = party.iter().map(|one| (one.position - middle.position).norm_squared()).sum::<f64>();
+    let distances = barriers.iter().map(|barrier| barrier.obstacle.distance(middle.position));
     let room = distances.fold(f64::INFINITY, math::at_most);
-    (sighting, Some(common.particle(party.len(), (square.sqrt(), room))))
+    common.particle(party.len(), ((square / party.len() as f64).sqrt(), room))
 }

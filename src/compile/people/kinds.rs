@@ -240,10 +240,11 @@ pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowe
         let sets_speed = kind.laws[Parameter::Speed as usize].is_some();
         Arc::new(Stepper { gait: kind.gait.clone(), search: kind.search, sets_speed })
     });
-    let Planning { roadmap, clearance, profile } = kind.planning.clone();
+    let Planning { roadmap, clearance, profile, rounding, reciprocal } = kind.planning.clone();
     body.planner = is_planned.then(|| {
         let speed_follows = kind.laws[Parameter::Speed as usize].is_none();
-        Arc::new(Planner { kind: name.name.clone(), roadmap, clearance, profile, speed_follows })
+        let kind = name.name.clone();
+        Arc::new(Planner { kind, roadmap, clearance, profile, rounding, reciprocal, speed_follows })
     });
     Ok(body)
 }

@@ -1,4 +1,4 @@
-//! The fields of planned kinds that are no parameters of a body: `roadmap`, `profile`, `avoid`, and both sides of
+//! The fields of planned kinds that are no parameters of a body: `roadmap`, `profile`, `rounding`, `avoid`, and both sides of
 //! `limit acceleration`.
 
 use crate::compile::context::{
@@ -13,11 +13,14 @@ use crate::compile::lower::{
 };
 use crate::compile::people::{kinds, routes};
 use crate::compile::presets;
-use crate::model::planner::{RoadmapRule, SpeedRule};
-use crate::model::{self, Parameter};
+use crate::model::planner::{RoadmapRule, RoundingRule, SpeedRule};
+use crate::model::{self, Law, Parameter};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Value};
 use crate::syntax::codes::Code;
 
+/// The word for reciprocal avoidance, and the relaxation time with it, s: its velocities are followed at once.
+const RECIPROCAL: &str = "orca";
+const PROMPT: f64 = 0.2;
 /// Most samples of a roadmap.
 const MOST_SAMPLES: f64 = 100_000.0;
 /// Most vertices to which one is joined.
@@ -71,13 +74,27 @@ pub(crate) fn planning(
             let said = "`profile` must be `varied`, `optimal` or `uniform`";
             context.report(error!(E0305, value.span(), "{said}"))
         }
+        ("rounding", value) => {
+            let named = |name: &str| RoundingRule::ALL.into_iter().find(|rule| rule.name() == name);
+            if let Some(rule) = word(value).and_then(named) {
+                kind.planning.rounding = rule;
+                return Ok(());
+            }
+            context.report(error!(E0305, value.span(), "`rounding` must be `shared` or `half_edges`"))
+        }
         (_, value) => avoid(context, value, kind),
     }
 }
 
 /// The force by which a planned kind avoids others.
 fn avoid(context: &mut Context<'_>, value: &Value, kind: &mut Kind) -> Lowered<()> {
+    kind.planning.reciprocal = word(value) == Some(RECIPROCAL);
     let force = match value {
+        _ if kind.planning.reciprocal => Parameter::ALL.map(|parameter| match parameter {
+            Parameter::A => Some(Law::Constant(0.0)),
+            Parameter::Tau => Some(Law::Constant(PROMPT)),
+            other => presets::law(FORCE, other),
+        }),
         Value::Force { kind: base, preset } => {
             force(context, base, preset)?;
             let name = preset.name.clone();
@@ -93,8 +110,9 @@ fn avoid(context: &mut Context<'_>, value: &Value, kind: &mut Kind) -> Lowered<(
         }
         other => {
             let error = error!(E0305, other.span(), "expected a force");
-            return context
-                .report(error.hint(format!("write `avoid = sfm preset {FORCE}` or a kind of `sfm`")));
+            return context.report(
+                error.hint(format!("write `avoid = sfm preset {FORCE}`, a kind of `sfm`, or `orca`")),
+            );
         }
     };
     for (parameter, law) in Parameter::ALL.into_iter().zip(force) {

@@ -15,6 +15,7 @@ mod drivers;
 mod follow;
 mod lanes;
 mod person;
+mod reciprocal;
 mod situation;
 mod stage;
 
@@ -106,6 +107,7 @@ pub(super) fn steer_at(level: Level, drive: &Drive, state: &mut State) {
         ask::all(drive, state);
         for (block, active) in active.into_iter().enumerate() {
             follow::pursue_at(level, drive, state, block, active & state.present[block]);
+            reciprocal::avoid(drive, state, block, active & state.present[block]);
         }
     }
 }

@@ -143,12 +143,7 @@ impl Drawing {
             y += frame::LINE;
         }
         if !self.note.is_empty() {
-            let _ = writeln!(
-                plate.body,
-                "<text x=\"{MARGIN:.1}\" y=\"{:.1}\">{}</text>",
-                y - 0.5,
-                escape(&self.note)
-            );
+            let _ = writeln!(plate.body, "<text x=\"8\" y=\"{:.1}\">{}</text>", y - 0.5, escape(&self.note));
             y += frame::LINE;
         }
         (plate.body, [width.unwrap_or(MARGIN + size.x * scale + END), y])

@@ -228,7 +228,7 @@ pub fn draw(scenario: &Scenario, walked: &Walked) -> Picture {
     let most = corridor(&mut drawing, &walks);
     plan::name_places(&mut drawing, scenario);
     let (all, most) = (count(walks.len() as u64), count(most));
-    drawing.note(&format!("{all} walks; cells of {SIDE} m, the darkest is passed by {most}"));
+    drawing.note(&format!("{all} walks; cells of {SIDE} m, up to {most} in one"));
     Picture::plan(if walked.title.is_empty() { "walks" } else { &walked.title }, drawing)
 }
 

@@ -18,6 +18,6 @@ mod tests;
 
 pub use path::Path;
 pub use piece::{Piece, Place};
-pub use rounding::round;
+pub use rounding::{round, round_by};
 pub use shape::{Part, PathShape, ShapeError};
 pub use shortcut::shortcut;

@@ -11,6 +11,7 @@ use super::piece::Piece;
 use super::taut;
 use crate::base::geometry::{Segment, Vec2};
 use crate::model::Sight;
+use crate::model::planner::RoundingRule;
 use crate::model::sight::ROUNDING;
 
 /// With a smaller radius, m, an agent stops and turns.
@@ -24,7 +25,12 @@ pub(super) const LEAST_RADIUS: f64 = 0.05;
 /// left out. If the polyline keeps `reach` from the barriers, so does the path, up to 1e-9 m. Without points it is
 /// empty and lies at the origin.
 pub fn round(points: &[Vec2], corner: f64, reach: f64, sight: &Sight) -> Path {
-    let rounding = Rounding { corner, reach, sight };
+    round_by(points, (corner, RoundingRule::Shared), reach, sight)
+}
+
+/// The same where a rule says how much of its legs an arc may take.
+pub fn round_by(points: &[Vec2], (corner, rule): (f64, RoundingRule), reach: f64, sight: &Sight) -> Path {
+    let rounding = Rounding { corner, rule, reach, sight };
     let mut stops = tidy(points);
     let mut fillets = rounding.fillets(&stops);
     if fillets.iter().any(|fillet| fillet.is_blocked) {
@@ -67,6 +73,7 @@ struct Fillet {
 
 struct Rounding<'a> {
     corner: f64,
+    rule: RoundingRule,
     reach: f64,
     sight: &'a Sight,
 }
@@ -77,7 +84,8 @@ impl Rounding<'_> {
         // A leg is shared by the fillets at both of its ends.
         let last = stops.len().saturating_sub(1);
         let has_fillet = |k: usize| k > 0 && k < last && stops.get(k).is_some_and(|stop| stop.around == 0.0);
-        let share = |k: usize| if has_fillet(k) && has_fillet(k + 1) { 0.5 } else { 1.0 };
+        let is_half = |k: usize| self.rule == RoundingRule::HalfEdges || has_fillet(k) && has_fillet(k + 1);
+        let share = |k: usize| if is_half(k) { 0.5 } else { 1.0 };
         let legs = stops.windows(2).filter_map(|pair| Leg::between(*pair.first()?, *pair.get(1)?));
         let legs: Vec<Leg> = legs.collect();
         let inner = legs.iter().zip(legs.iter().skip(1)).zip(stops.iter().skip(1)).enumerate();

@@ -11,6 +11,6 @@ mod walker;
 pub use errand::{Errand, point_in};
 pub use options::{PathOption, path_options};
 pub use reach::doubt;
-pub use speeds::{Course, Speeds, stretches};
+pub use speeds::{Course, Speeds, pieces_of, stretches};
 pub use terrain::{Terrain, Terrains, middle, widest};
 pub use walker::{Outline, Walkers, Wish, walkers};

@@ -2,8 +2,10 @@
 
 use crate::base::geometry::Vec2;
 use crate::kernel::driver::{Sample, Trajectory};
+use crate::model::parameter::FEWEST_PIECES;
+use crate::model::planner::RoundingRule;
 use crate::model::{Parameter, Sight, SpeedRule};
-use crate::route::path::{Path, round, shortcut};
+use crate::route::path::{Path, round_by, shortcut};
 use crate::route::profile::{
     Infeasible, Law, Limits, Motion, Optimum, Stretch, Varied, Variety, optimal, varied,
 };
@@ -30,14 +32,16 @@ pub struct Speeds {
     pub preferred: f64,
     /// Standard deviation of speeds around it, as a share.
     pub spread: f64,
-    /// Number of pieces.
-    pub pieces: usize,
+    /// Number of pieces; below 2, for each metre.
+    pub pieces: f64,
     /// Largest turning radius, m.
     pub corner: f64,
     /// Radius of the body, m.
     pub radius: f64,
     /// How speeds come about.
     pub rule: SpeedRule,
+    /// How much of an edge an arc may take.
+    pub rounding: RoundingRule,
 }
 
 /// A path with the speeds along it.
@@ -49,6 +53,11 @@ pub struct Course {
     pub optimum: Optimum,
     /// The varied one, if it is that which is walked.
     pub varied: Option<Varied>,
+}
+
+/// How many pieces a path of a length, m, has, with so many for each metre.
+pub fn pieces_of(per_metre: f64, length: f64) -> usize {
+    (per_metre * length).round().clamp(2.0, 64.0) as usize
 }
 
 /// A path as a profile sees it.
@@ -80,11 +89,18 @@ impl Speeds {
             },
             preferred: own.min(limit),
             spread: of(Parameter::Spread),
-            pieces: of(Parameter::Pieces) as usize,
+            pieces: of(Parameter::Pieces),
             corner: of(Parameter::Corner),
             radius: of(Parameter::Radius),
             rule,
+            rounding: RoundingRule::default(),
         }
+    }
+
+    /// The number of pieces of a path of a length, m.
+    fn pieces(&self, length: f64) -> usize {
+        let is_whole = self.pieces >= FEWEST_PIECES;
+        if is_whole { self.pieces as usize } else { pieces_of(self.pieces, length) }
     }
 
     /// The corners of a path without those that only make it longer: shortcuts are free lines. The shortened path is taken if
@@ -108,7 +124,7 @@ impl Speeds {
             return corners;
         }
         let time = |points: &[Vec2]| {
-            let path = round(points, self.corner, self.radius, sight);
+            let path = round_by(points, (self.corner, self.rounding), self.radius, sight);
             fastest(&stretches(&path), self.limits, 0.0)
                 .map_or(f64::INFINITY, |(optimum, _)| optimum.duration())
         };
@@ -125,13 +141,13 @@ impl Speeds {
         draw: impl FnMut(u32) -> [f64; 2],
     ) -> Result<Course, Infeasible> {
         let mut corner = self.corner;
-        let mut path = round(corners, corner, self.radius, sight);
+        let mut path = round_by(corners, (corner, self.rounding), self.radius, sight);
         for _ in 0..HALVINGS {
             if goals.iter().all(|goal| path.nearest(*goal).1 <= self.radius) {
                 break;
             }
             corner *= 0.5;
-            path = round(corners, corner, self.radius, sight);
+            path = round_by(corners, (corner, self.rounding), self.radius, sight);
         }
         let stretches = stretches(&path);
         let ahead = velocity.dot(&path.at(0.0).direction).max(0.0).min(self.limits.speed);
@@ -142,7 +158,7 @@ impl Speeds {
             SpeedRule::Varied => Some(Law::Preferred { speed: self.preferred, spread: self.spread }),
         };
         let varied = law.and_then(|law| {
-            let variety = Variety { pieces: self.pieces, floor: FLOOR, law };
+            let variety = Variety { pieces: self.pieces(path.length()), floor: FLOOR, law };
             // Where the start speed leaves no choice the fastest profile is the only one.
             varied(&stretches, self.limits, start, 0.0, &variety, draw).ok()
         });

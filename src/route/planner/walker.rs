@@ -178,8 +178,9 @@ impl Driver for Walkers {
         let Some(planner) = scenario.agents[id.0 as usize].body.planner.as_ref() else {
             return Plan::Straight;
         };
-        let speeds =
-            Speeds::new(|parameter| situation.parameter(parameter), situation.own_speed, planner.profile);
+        let of = |parameter| situation.parameter(parameter);
+        let speeds = Speeds::new(of, situation.own_speed, planner.profile);
+        let speeds = Speeds { rounding: planner.rounding, ..speeds };
         let wish = Wish {
             scenario,
             agent: id,
