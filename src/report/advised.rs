@@ -47,8 +47,8 @@ pub struct User {
     pub advised: Walked,
     /// What this person did as recorded.
     pub recorded: Walked,
-    /// Cycles, and those with a move.
-    pub cycles: [u64; 2],
+    /// Cycles, those with a move, those of which it is known whether the user moved as advised, and those in which that was so.
+    pub cycles: [u64; 4],
 }
 
 /// A number of a walk.
@@ -91,14 +91,16 @@ pub fn table_of_users(users: &[User], seed: u64) -> String {
     }
     let nearer = users.iter().filter(|user| least(&user.advised) < least(&user.recorded)).count();
     let longer: Vec<f64> = users.iter().map(|user| user.advised.length / user.recorded.length).collect();
-    let [cycles, advised] = [0, 1].map(|k| users.iter().map(|user| user.cycles[k]).sum::<u64>());
+    let [cycles, advised, known, followed] =
+        [0, 1, 2, 3].map(|k| users.iter().map(|user| user.cycles[k]).sum::<u64>());
     let _ = writeln!(
         out,
-        "\n{nearer} of {} came nearer to somebody; the way is {:.1} % longer in the median; a move was advised in {:.1} % of {} cycles.\nWho walked with the user as recorded does not count in the least distance.",
+        "\n{nearer} of {} came nearer to somebody; the way is {:.1} % longer in the median; a move was advised in {:.1} % of {} cycles,\nand the user moved so in {:.1} %. Who walked with the user as recorded does not count in the least distance.",
         users.len(),
         100.0 * (median(longer).unwrap_or(1.0) - 1.0),
         100.0 * advised as f64 / cycles.max(1) as f64,
-        count(cycles)
+        count(cycles),
+        100.0 * followed as f64 / known.max(1) as f64
     );
     out
 }

@@ -74,7 +74,7 @@ pub fn to_json(paths: &[PlannedPath]) -> String {
             "length": path.course.path.length(),
             "optimal_s": path.course.optimum.duration(),
             "duration_s": path.course.duration(),
-            "pieces": path.course.path.pieces().iter().map(piece).collect::<Vec<_>>(),
+            "segments": path.course.path.pieces().iter().map(piece).collect::<Vec<_>>(),
             "knots": knots,
         })
     };
@@ -147,7 +147,7 @@ fn times(course: &Course, dt: f64) -> impl Iterator<Item = f64> + '_ {
 
 /// One row for each time step of each path.
 pub fn to_csv(paths: &[PlannedPath], dt: f64) -> String {
-    let mut out = "agent,path,t,s,x,y,vx,vy,ax,ay,piece\n".to_owned();
+    let mut out = "agent,path,t,s,x,y,vx,vy,ax,ay,segment\n".to_owned();
     for path in paths {
         let (course, joints) = (&path.course, path.course.path.joints());
         let name = if path.name.contains(',') { format!("\"{}\"", path.name) } else { path.name.clone() };

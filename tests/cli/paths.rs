@@ -80,7 +80,7 @@ fn paths_of_a_scenario_come_as_text_tables_and_pictures() {
     assert_eq!(text.lines().count(), 17, "15 walkers, one of them with 3 paths\n{text}");
     let csv = said(&["--agent", "people[2]", "--format", "csv", "--dt", "0.5s"]);
     let mut rows = csv.lines();
-    assert_eq!(rows.next(), Some("agent,path,t,s,x,y,vx,vy,ax,ay,piece"));
+    assert_eq!(rows.next(), Some("agent,path,t,s,x,y,vx,vy,ax,ay,segment"));
     let last: Vec<f64> = rows.next_back().unwrap().split(',').skip(2).map(|v| v.parse().unwrap()).collect();
     assert!(last[2] > 18.0 && last[3] < 2.0 && last[4].abs() < 1e-6, "at rest in the goal: {last:?}");
     let json: serde_json::Value =
@@ -115,7 +115,7 @@ fn way_points_are_rounded() {
         let words =
             [&["path", "--waypoints", "corners.csv", "--corner", "7m", "--format", "json"], words].concat();
         let json = place.call(&words).json();
-        json["paths"][0]["pieces"][1]["radius"].as_f64().unwrap()
+        json["paths"][0]["segments"][1]["radius"].as_f64().unwrap()
     };
     assert!((longest(&[]) - 7.0).abs() < 1e-9 && (longest(&["--half-edges"]) - 5.0).abs() < 1e-9);
     let said = place.call(&["path", "--waypoints", "wrong.csv"]);

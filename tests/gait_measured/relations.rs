@@ -8,6 +8,9 @@ use smc::gait::synthetic::{Person, SyntheticGait};
 use smc::gait::walk::{Ground, Search, Walk, Walker};
 use smc::gait::{Draws, Foot, Gait, Phase, Shape, Stance};
 use smc::model::Scene;
+use smc::report::svg::frame::Frame;
+use smc::report::svg::picture::{Paper, Picture};
+use smc::report::svg::scale::Scale;
 use smc::route::grid::{ClearanceGrid, GoalField};
 use smc::route::roadmap::FreeSpace;
 use std::collections::BTreeMap;
@@ -167,28 +170,19 @@ fn figure() {
     let path: Vec<Vec2> = path.step_by(4).collect();
     let goal = path[path.len() - 1];
     let along = (goal - from).normalize();
-    let line = |class: &str, path: &[Vec2]| {
-        let seen = |p: &Vec2| {
-            let (p, left) = (p - from, Vec2::new(-along.y, along.x));
-            format!("{:.0},{:.0}", 20.0 + 200.0 * p.dot(&along), 90.0 - 400.0 * p.dot(&left))
-        };
-        println!(
-            "<polyline class=\"{class}\" points=\"{}\"/>",
-            path.iter().map(seen).collect::<Vec<_>>().join(" ")
-        );
+    let seen = |path: &[Vec2]| -> Vec<(f64, f64)> {
+        let left = Vec2::new(-along.y, along.x);
+        path.iter().map(|p| p - from).map(|p| (p.dot(&along), p.dot(&left))).collect()
     };
-    println!("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 540 210\">");
-    println!(
-        "<style>polyline{{fill:none;stroke:#999}}.recorded{{stroke:#c00;stroke-width:2}}text{{font:12px sans-serif}}</style>"
-    );
+    let axes = ["along the way (m)", "aside (m)"];
+    let mut frame = Frame::new(axes, Scale::linear([0.0, 2.5]), Scale::linear([-0.1, 0.1])).low();
     for index in 0..3 {
         let walk = &planned_to(captured, goal, &|index| person_of(&model, captured, index))[index];
         let places = walk.iter().flat_map(|step| (0..=15).map(move |k| step.place(f64::from(k) / 15.0)));
-        line("drawn", &places.collect::<Vec<_>>());
+        frame.line(seen(&places.collect::<Vec<_>>()), 4);
     }
-    line("recorded", &path);
-    println!("<text x=\"20\" y=\"20\">red: recorded (CMU 12_02); grey: drawn</text>");
-    println!(
-        "<text x=\"20\" y=\"200\">2.5 m from left to right; deviations to the side are doubled</text></svg>"
-    );
+    frame.line(seen(&path), 0);
+    frame.name("recorded (CMU 12_02)", 0);
+    frame.name("drawn", 4);
+    print!("{}", Picture::charts("A straight walk: the path of the hip", vec![frame]).svg(Paper::default()));
 }

@@ -70,8 +70,8 @@ impl Way {
 pub(super) struct Followed {
     /// What the user did as advised, and as recorded.
     pub(super) walked: [Walked; 2],
-    /// Cycles, and those with a move.
-    pub(super) cycles: [u64; 2],
+    /// Cycles, those with a move, those of which it is known whether the user moved as advised, and those in which that was so.
+    pub(super) cycles: [u64; 4],
 }
 
 /// Where a person was in batches.
@@ -121,7 +121,7 @@ pub(super) fn run(
     let company = company(batches, &own);
     let mut notes = Vec::new();
     let (mut advised, mut recorded) = (Way::default(), Way::default());
-    let mut counted = [0, 0];
+    let mut counted = [0; 4];
     let mut before: Option<f64> = None;
     let cycles = batches.chunk_by(|a, b| a.time == b.time);
     for cycle in cycles.take_while(|cycle| cycle[0].time <= to + 1e-6) {
@@ -162,7 +162,9 @@ pub(super) fn run(
         }
         before = Some(batch.time);
         let (found, used) = caller.ask(&shown, &mut notes)?;
-        counted = [counted[0] + 1, counted[1] + u64::from(found.status == Status::Advice)];
+        let is_move = found.status == Status::Advice;
+        let is = [true, is_move, found.followed.is_some(), found.followed == Some(true)];
+        counted.iter_mut().zip(is).for_each(|(count, is)| *count += u64::from(is));
         if is_told && !caller.tell(found, used)? {
             break;
         }

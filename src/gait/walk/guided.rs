@@ -82,8 +82,9 @@ impl Walk<'_> {
         };
         let is_clear = |found: &Candidate| self.is_clear(&found.step) && self.goes_on(found);
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
-        let mut options: Vec<_> =
-            (0..count).filter_map(|k| option(pose, k, &|share| Change::Steer(0.6 + 0.8 * share))).collect();
+        let mut options: Vec<_> = (0..count)
+            .filter_map(|k| option(pose, k, &|share| Change::Steer { share, at_once: k % 2 == 0 }))
+            .collect();
         let chosen = match choose(&options, is_clear, gap) {
             Ok((chosen, gap)) if gap >= WIDE => chosen,
             _ => {

@@ -81,7 +81,7 @@ impl HybridAStar {
             if is_plain {
                 Change::Never
             } else {
-                Change::Steer(f64::from(k) / f64::from(self.successors.max(1)))
+                Change::Steer { share: f64::from(k) / f64::from(self.successors.max(1)), at_once: false }
             }
         };
         let is_standing = pose.stance.last.is_none();
