@@ -106,7 +106,8 @@ fn line(text: &str) -> Line {
     Line { words: words.collect(), to, code: code.parse().unwrap() }
 }
 
-fn copied(from: &Path, to: &Path) {
+/// Copies the files of a folder.
+pub(crate) fn copied(from: &Path, to: &Path) {
     create_dir_all(to).unwrap();
     for entry in read_dir(from).unwrap().map(Result::unwrap).filter(|entry| entry.path().is_file()) {
         copy(entry.path(), to.join(entry.file_name())).unwrap();

@@ -1,19 +1,13 @@
 //! The pages about the papers: the commands of their blocks marked `run` do what the pages say.
 
+use crate::cookbook::copied;
 use crate::program::Place;
-use std::fs::{copy, create_dir_all, read_dir, read_to_string};
+use std::fs::read_to_string;
 use std::path::Path;
 use std::process::Command;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn copied(from: &Path, to: &Path) {
-    create_dir_all(to).unwrap();
-    for entry in read_dir(from).unwrap().map(Result::unwrap).filter(|entry| entry.path().is_file()) {
-        copy(entry.path(), to.join(entry.file_name())).unwrap();
-    }
 }
 
 /// The blocks of a page: what stands behind the fence, and the lines.
