@@ -1,5 +1,6 @@
 //! Possible next steps: drawn from the gait, and some of them turned towards the way.
 
+use super::course::Course;
 use super::placed::{PlacedStep, angle, end_of, turned};
 use super::task::Walk;
 use super::turn;
@@ -17,12 +18,6 @@ pub(super) const HEADING: f64 = 0.35;
 
 /// Larger errors of the heading count as this, rad.
 const MOST_ERROR: f64 = 1.5;
-
-/// A small correction of a step is made within this first share of its way; a turn takes the whole way.
-const AT_ONCE: f64 = 0.2;
-
-/// Errors of the direction up to this are corrected, rad; larger ones are turns, unless nothing is in the way.
-const SMALL: f64 = 12.0 * PI / 180.0;
 
 /// The weight of a step falls with the square of the angle e between its chord and the way, as `1/(1 + e^2/(2 s^2))`, s this, rad:
 /// recorded strides on straight ways have a standard deviation of 0.9 degrees. The tail is that of Cauchy's law, so that among
@@ -62,16 +57,16 @@ pub(super) struct Candidate {
 
 /// How a step is changed.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Change {
+pub(super) enum Change<'a> {
     /// Not at all.
     Never,
-    /// Turned towards the way: an error that is small, or on a straight way, is corrected by 0.6 to 1.4 of it, where this share lies in
-    /// 0 .. 1; a large one alike, or by up to 1.5 of it along the whole step.
+    /// Turned towards the way by 0.6 to 1.4 of its error, where this share lies in 0 .. 1, and led along the course; without
+    /// one, by up to 1.5 of the error along the whole step.
     Steer {
         /// The share.
         share: f64,
-        /// Whether a large error is corrected early in the step.
-        at_once: bool,
+        /// The way ahead.
+        course: Option<&'a Course>,
     },
     /// Turned by a share of the widest turn, and scaled: to get out of the way of others.
     Swerve(f64, f64),
@@ -89,33 +84,29 @@ impl Walk<'_> {
         pose: &Pose,
         way: &Way,
         mut after: Stance,
-        change: Change,
+        change: Change<'_>,
     ) -> Option<Candidate> {
         let (foot, mut shape) = after.last?;
         let end = end_of(&shape);
         let own = || angle(Vec2::x(), shape.curve().tangent(1.0));
-        let (by, scale, within) = match change {
-            Change::Never => (0.0, 1.0, 1.0),
-            Change::Steer { share, at_once } => {
-                // Towards the direction that the way has at the end of the step.
-                let ahead =
-                    self.way(pose.at + way.direction * end.norm()).map_or(way.direction, |w| w.direction);
-                let error = angle(turned(end, pose.heading), ahead);
-                let corrected = error * (0.6 + 0.8 * share);
-                match (way.is_straight || error.abs() <= SMALL, at_once) {
-                    (true, _) => (corrected, 1.0, AT_ONCE),
-                    (false, true) => (corrected, 1.0, (error.abs() / turn::WIDEST).clamp(AT_ONCE, 1.0)),
-                    (false, false) => (error * 1.5 * share, 1.0, 1.0),
-                }
-            }
-            Change::Swerve(share, scale) => (turn::WIDEST * share, scale, 1.0),
+        let error = || angle(turned(end, pose.heading), way.direction);
+        let (by, scale, course) = match change {
+            Change::Never => (0.0, 1.0, None),
+            Change::Steer { share, course: None } => (error() * 1.5 * share, 1.0, None),
+            Change::Steer { share, course } => (error() * (0.6 + 0.8 * share), 1.0, course),
+            Change::Swerve(share, scale) => (turn::WIDEST * share, scale, None),
         };
+        let (later, chord) = course.map_or((0.0, Vec2::x()), |course| course.ahead(end.norm()));
         if by != 0.0 || scale != 1.0 {
-            let (own, widest) = (own(), turn::limit(&shape));
+            let (own, widest) = (own() + later, turn::limit(&shape));
             let by = (own + by).clamp(-widest.max(own.abs()), widest.max(own.abs())) - own;
             // Measured medians: 1.30 m/s straight on, 1.12 m/s in turns of 40 degrees.
-            let sharp = by.abs().min(turn::WIDEST);
-            shape = turn::bent(&shape, by, scale * (1.0 - 0.29 * sharp * sharp), within);
+            let sharp = (by + later).abs().min(turn::WIDEST);
+            let scale = scale * (1.0 - 0.29 * sharp * sharp);
+            shape = match course {
+                Some(course) => course.led(&shape, by, scale),
+                None => turn::bent(&shape, by, scale),
+            };
             after.last = Some((foot, shape));
         }
         let step = PlacedStep::new(foot, pose.at, pose.heading, shape);
@@ -124,7 +115,7 @@ impl Walk<'_> {
         let error = angle(step.end_heading(), onward.direction).abs().min(MOST_ERROR);
         let detour = length + onward.length - way.length;
         let turning = error * onward.length.min(1.0);
-        let chord = angle(turned(end_of(&shape), pose.heading), way.direction) / STRAIGHT;
+        let chord = angle(turned(end_of(&shape), pose.heading), turned(chord, way.direction)) / STRAIGHT;
         let astray = math::ln(1.0 + 0.5 * chord * chord) * onward.length.min(1.0);
         let slowing = 4.0 * (1.0 - scale);
         let cost = DETOUR * (detour + HEADING * turning) + slowing + astray;
@@ -147,7 +138,7 @@ impl Walk<'_> {
             duration: 1.0,
         };
         [(1.0, 1.0), (0.5, 1.0), (1.0, 0.6)].into_iter().any(|(share, scale)| {
-            let shape = turn::bent(&line(scale), share * error, 1.0, 1.0);
+            let shape = turn::bent(&line(scale), share * error, 1.0);
             self.is_clear(&PlacedStep::new(found.step.foot.other(), at, heading, shape))
         })
     }

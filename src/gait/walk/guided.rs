@@ -75,29 +75,30 @@ impl Walk<'_> {
     ) -> Result<(PlacedStep, Stance), Rejected> {
         let count = candidates.clamp(1, MOST);
         let drawn = self.drawn(pose, (0..count).map(|k| Draws::of(self.stream, number, k)));
-        let option = |pose: &Pose, k: u32, change: &dyn Fn(f64) -> Change| {
-            let (noise, share) = self.choice(number, k);
-            let found = self.candidate(pose, way, drawn[(k % count) as usize], change(share))?;
+        let course = self.course(pose.at, way);
+        let option = |pose: &Pose, k: u32, noise: f64, change: Change<'_>| {
+            let found = self.candidate(pose, way, drawn[(k % count) as usize], change)?;
             Some((noise - found.cost, found))
         };
         let is_clear = |found: &Candidate| self.is_clear(&found.step) && self.goes_on(found);
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
         let mut options: Vec<_> = (0..count)
-            .filter_map(|k| option(pose, k, &|share| Change::Steer { share, at_once: k % 2 == 0 }))
+            .filter_map(|k| {
+                let (noise, share) = self.choice(number, k);
+                option(pose, k, noise, Change::Steer { share, course: Some(&course) })
+            })
             .collect();
         let chosen = match choose(&options, is_clear, gap) {
             Ok((chosen, gap)) if gap >= WIDE => chosen,
             _ => {
                 // Somebody or a barrier is near: the same steps to the side and shorter, too.
-                let swerve = |k: u32| {
-                    let scale = 1.0 - 0.35 * f64::from(k % 3);
-                    move |share| Change::Swerve(2.0 * share - 1.0, scale)
-                };
                 options.extend((count..2 * count).filter_map(|k| {
+                    let (noise, share) = self.choice(number, k);
                     // The path of somebody who stands may begin to the side.
                     let side =
                         if pose.stance.last.is_none() { ASIDE * f64::from(k % 5) - 2.0 * ASIDE } else { 0.0 };
-                    option(&Pose { heading: rotated(pose.heading, side), ..*pose }, k, &swerve(k))
+                    let pose = Pose { heading: rotated(pose.heading, side), ..*pose };
+                    option(&pose, k, noise, Change::Swerve(2.0 * share - 1.0, 1.0 - 0.35 * f64::from(k % 3)))
                 }));
                 choose(&options, is_clear, gap)?.0
             }

@@ -2,6 +2,7 @@
 //! heading, and the heuristic is the length of the way among the barriers.
 
 use super::candidate::{Candidate, Change, HEADING, Pose};
+use super::course::Course;
 use super::last::Chain;
 use super::no_step::NoStep;
 use super::placed::{PlacedStep, angle};
@@ -76,12 +77,16 @@ impl HybridAStar {
         };
         let draws =
             |expansion: u32, k: u32| Draws::of(walk.stream, SEARCHED + expansion, number % 128 * 32 + k % 32);
-        let change = |k: u32| {
+        let straight = Course::straight();
+        let change = |k: u32, way: &Way| {
             let is_plain = self.is_as_published || k.is_multiple_of(2);
             if is_plain {
                 Change::Never
             } else {
-                Change::Steer { share: f64::from(k) / f64::from(self.successors.max(1)), at_once: false }
+                Change::Steer {
+                    share: f64::from(k) / f64::from(self.successors.max(1)),
+                    course: way.is_straight.then_some(&straight),
+                }
             }
         };
         let is_standing = pose.stance.last.is_none();
@@ -95,7 +100,9 @@ impl HybridAStar {
                 from.heading = rotated(pose.heading, (2.0 * u - 1.0) * PI);
             }
             for after in walk.drawn(&from, std::iter::once(draws(0, k))) {
-                if let Some(found) = walk.candidate(&from, way, after, change(k % self.successors.max(1))) {
+                if let Some(found) =
+                    walk.candidate(&from, way, after, change(k % self.successors.max(1), way))
+                {
                     tree.push(&found, left(&found), None, number);
                 }
             }
@@ -135,7 +142,7 @@ impl HybridAStar {
             }
             let drawn = walk.drawn(&from, (0..self.successors.min(32)).map(|k| draws(expansions, k)));
             for (k, after) in (0..).zip(drawn) {
-                if let Some(found) = walk.candidate(&from, &way, after, change(k)) {
+                if let Some(found) = walk.candidate(&from, &way, after, change(k, &way)) {
                     tree.push(&found, left(&found), Some(at), next);
                 }
             }

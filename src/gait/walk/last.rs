@@ -93,7 +93,7 @@ impl Walk<'_> {
             let scale = target.norm() / both.norm().max(1e-9);
             // Half of the turn of both steps.
             let by = angle(both, target);
-            shape = turn::bent(&shape, by, scale, 1.0);
+            shape = turn::bent(&shape, by, scale);
             if !turn::is_legal(&shape) {
                 return None;
             }

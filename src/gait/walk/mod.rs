@@ -3,6 +3,7 @@
 
 mod candidate;
 mod cells;
+mod course;
 mod ground;
 mod guided;
 mod hybrid;

@@ -264,3 +264,74 @@ fn reasons_for_no_step_are_reported() {
     let walk = walk(&ground, &field, goal, 1, Search::HybridAStar(few));
     assert_eq!(walk.whole(outside), Err(NoStep::Limit { expansions: 2 }));
 }
+
+/// The shortest way between two places at least this far from all boxes: over points of the arcs around their corners.
+fn shortest(boxes: &[[f64; 4]], from: Vec2, to: Vec2, apart: f64) -> Vec<Vec2> {
+    let distance = |p: Vec2, b: &[f64; 4]| {
+        Vec2::new((b[0] - p.x).max(p.x - b[2]).max(0.0), (b[1] - p.y).max(p.y - b[3]).max(0.0)).norm()
+    };
+    let is_clear = |a: Vec2, b: Vec2| {
+        let count = ((b - a).norm() / 0.01).ceil() as usize;
+        (0..=count).all(|k| {
+            let place = a + (b - a) * (k as f64 / count.max(1) as f64);
+            boxes.iter().all(|b| distance(place, b) > apart - 1e-4)
+        })
+    };
+    let mut places = vec![from, to];
+    for b in boxes {
+        for (quarter, corner) in
+            [(b[2], b[3]), (b[0], b[3]), (b[0], b[1]), (b[2], b[1])].into_iter().enumerate()
+        {
+            places.extend((0..=16).map(|k| {
+                let (sin, cos) =
+                    ((quarter as f64 + f64::from(k) / 16.0) * std::f64::consts::FRAC_PI_2).sin_cos();
+                // A little farther, so that chords keep the distance as well.
+                Vec2::new(corner.0, corner.1) + Vec2::new(cos, sin) * (apart * 1.0013)
+            }));
+        }
+    }
+    let mut known = vec![(f64::INFINITY, 0); places.len()];
+    let mut open: Vec<usize> = (0..places.len()).collect();
+    known[0].0 = 0.0;
+    while let Some(next) = (0..open.len()).min_by(|a, b| known[open[*a]].0.total_cmp(&known[open[*b]].0)) {
+        let at = open.swap_remove(next);
+        for other in open.iter().copied() {
+            let through = known[at].0 + (places[other] - places[at]).norm();
+            if through < known[other].0 && is_clear(places[at], places[other]) {
+                known[other] = (through, at);
+            }
+        }
+    }
+    let mut way = vec![1];
+    while way[way.len() - 1] != 0 {
+        way.push(known[way[way.len() - 1]].1);
+    }
+    way.into_iter().rev().map(|k| places[k]).collect()
+}
+
+#[test]
+fn walks_around_two_obstacles_keep_to_the_shortest_way() {
+    const TWO: [[f64; 4]; 2] = [[1.9, 3.15, 2.4, 5.5], [4.1, 0.8, 4.6, 3.25]];
+    let (start, goal) = (Vec2::new(0.3, 3.25), Vec2::new(6.2, 3.25));
+    let ground = ground(&TWO);
+    let field = GoalField::new(ground.grid(), goal);
+    let way = shortest(&TWO, start, goal, RADIUS + 0.05);
+    let off = |p: Vec2| {
+        let pieces = way.windows(2).map(|ends| {
+            let along = ends[1] - ends[0];
+            let share = ((p - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            (p - ends[0] - along * share).norm()
+        });
+        pieces.fold(f64::INFINITY, f64::min)
+    };
+    let mut worst: Vec<f64> = (0..100)
+        .map(|seed| {
+            let walk = walk(&ground, &field, goal, seed, Search::default());
+            let steps = walk.whole(Walker::standing(start, None)).unwrap();
+            let places = steps.iter().flat_map(|step| (0..=20).map(|k| step.place(f64::from(k) / 20.0)));
+            places.map(off).fold(0.0, f64::max)
+        })
+        .collect();
+    worst.sort_by(f64::total_cmp);
+    assert!(worst[50] < 0.06 && worst[90] < 0.12, "{} {}", worst[50], worst[90]);
+}

@@ -25,21 +25,18 @@ pub(super) fn is_legal(shape: &Shape) -> bool {
     angle(Vec2::x(), shape.curve().tangent(1.0)).abs() <= limit(shape)
 }
 
-/// The step bent by an angle, rad, positive to the left, and scaled: along an arc within a first share of its way, straight on
-/// from there. Its direction at the begin stays.
-pub(super) fn bent(shape: &Shape, turn: f64, scale: f64, within: f64) -> Shape {
-    let end = end_of(shape).norm() * scale;
-    // The place x on the way of the step goes to x on an arc of this curvature and then a line, and y stays across it.
-    let arc = end * within;
+/// The step bent by an angle, rad, positive to the left, along an arc, and scaled. Its direction at the begin stays.
+pub(super) fn bent(shape: &Shape, turn: f64, scale: f64) -> Shape {
+    let arc = end_of(shape).norm() * scale;
+    // The place x on the way of the step goes to x on an arc of this curvature, and y stays across it.
     let curvature = if arc > 1e-6 { turn / arc } else { 0.0 };
     let bend = |p: Vec2| {
         let (x, y) = (p.x * scale, p.y * scale);
-        let (on_arc, on_line) = if within < 1.0 { (x.min(arc), (x - arc).max(0.0)) } else { (x, 0.0) };
-        let half = 0.5 * on_arc * curvature;
+        let half = 0.5 * x * curvature;
         let (sin, cos) = math::sin_cos(half);
-        let chord = if half.abs() > 1e-4 { on_arc * sin / half } else { on_arc * (1.0 - half * half / 6.0) };
+        let chord = if half.abs() > 1e-4 { x * sin / half } else { x * (1.0 - half * half / 6.0) };
         let (across, along) = (2.0 * sin * cos, 1.0 - 2.0 * sin * sin);
-        Vec2::new(chord * cos + on_line * along - y * across, chord * sin + on_line * across + y * along)
+        Vec2::new(chord * cos - y * across, chord * sin + y * along)
     };
     Shape { landmarks: shape.landmarks.map(bend), duration: shape.duration }
 }
@@ -49,7 +46,7 @@ pub(super) fn bent(shape: &Shape, turn: f64, scale: f64, within: f64) -> Shape {
 pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
     let (mut scale, mut turn) = (target.norm() / end_of(shape).norm().max(1e-9), 0.0);
     for _ in 0..4 {
-        let made = bent(shape, turn, scale, 1.0);
+        let made = bent(shape, turn, scale);
         let end = end_of(&made);
         scale *= target.norm() / end.norm().max(1e-9);
         turn += 2.0 * angle(end, target);
@@ -57,7 +54,7 @@ pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
             return None;
         }
     }
-    let mut made = bent(shape, turn, scale, 1.0);
+    let mut made = bent(shape, turn, scale);
     let miss = target - end_of(&made);
     for (k, p) in made.landmarks.iter_mut().enumerate() {
         let share = (k + 1) as f64 / SPANS as f64;

@@ -10,6 +10,9 @@ const FARTHEST: f64 = 2.0;
 /// Most cells in a row or column; the cells of a larger scene are larger.
 const MOST: f64 = 2000.0;
 
+/// Lines that come nearer to barriers than they should by less than this are clear, m.
+const GRAZE: f64 = 0.002;
+
 /// Where the eight cells around a cell are.
 const SIDES: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
@@ -112,6 +115,46 @@ impl ClearanceGrid {
         self.clearance[cell as usize] - (p - self.center(cell)).norm()
     }
 
+    /// The distance of a place from barriers, m, between those of the four centers around it, and its gradient.
+    fn between(&self, p: Vec2) -> (f64, Vec2) {
+        let (at, corner) = self.corner(p);
+        let (columns, corner) = (self.columns as u32, corner as usize);
+        let (column, row) = (corner as u32 % columns, corner as u32 / columns);
+        let x = (at.x - f64::from(column)).clamp(0.0, 1.0);
+        let y = (at.y - f64::from(row)).clamp(0.0, 1.0);
+        let known = |k: usize| self.clearance.get(corner + k).copied().unwrap_or(0.0);
+        let (a, b, c, d) = (known(0), known(1), known(self.columns), known(self.columns + 1));
+        let (below, above) = (a + x * (b - a), c + x * (d - c));
+        let gradient = Vec2::new(b - a + y * (d - c - b + a), above - below) / self.side;
+        (below + y * (above - below), gradient)
+    }
+
+    /// The place on a line that is nearest to barriers, moved across to this distance from them, m: the corner that a way from one end
+    /// to the other bends around.
+    pub(super) fn corner_between(&self, from: Vec2, to: Vec2, distance: f64) -> Option<Vec2> {
+        let length = (to - from).norm();
+        let along = (to - from) / length.max(1e-12);
+        let (mut at, mut tightest) = (0.0, (f64::INFINITY, from));
+        while at < length {
+            let place = from + along * at;
+            let (known, _) = self.between(place);
+            if known < tightest.0 {
+                tightest = (known, place);
+            }
+            at += (known - distance - self.side).max(0.25 * self.side);
+        }
+        let mut at = tightest.1;
+        for _ in 0..3 {
+            let (known, gradient) = self.between(at);
+            let norm = gradient.norm();
+            if norm < 0.5 || (known - distance).abs() > 2.0 * self.side {
+                return None;
+            }
+            at -= gradient * ((known - distance) / (norm * norm));
+        }
+        Some(at)
+    }
+
     /// The up to eight cells around a cell.
     pub(super) fn around(&self, cell: u32) -> impl Iterator<Item = u32> + use<> {
         let (columns, rows) = (self.columns as i64, self.rows as i64);
@@ -130,7 +173,11 @@ impl ClearanceGrid {
         while at < length {
             let cell = self.cell(from + along * at);
             let known = self.clearance[cell as usize];
-            if known < if at < start { self.reach } else { distance } {
+            let least = if at < start { self.reach } else { distance };
+            // The distance of a center is that of its cell within the diagonal.
+            if known < least + 0.71 * self.side
+                && (known < self.reach || self.between(from + along * at).0 < least - GRAZE)
+            {
                 return false;
             }
             // A cell that is far from barriers answers for all cells within that distance.
