@@ -8,7 +8,7 @@ use smc::{Diagnostics, Model, Options};
 
 const SCENARIO: &str = "
     horizon = 20 s
-    step = 0.05 s
+    step = 0.025 s
     param width = 1.2 m
     scene {
       wall west: (0, -3) -- (0, -0.5 * width)

@@ -42,12 +42,14 @@ class Drawing {
   fit(box) {
     const { width, height } = this.size;
     this.scale = Math.max(Math.min(width / (box.right - box.left), height / (box.high - box.low)), 1e-3);
+    this.isWhole = true;
     this.centre = { x: (box.left + box.right) / 2, y: (box.low + box.high) / 2 };
   }
 
   // Zooms about a point of the canvas, CSS pixels; its centre without one.
   zoom(factor, at) {
     const { width, height } = this.size;
+    this.isWhole = false;
     const [dx, dy] = at ? [at.x - width / 2, at.y - height / 2] : [0, 0];
     const scale = Math.min(Math.max(this.scale * factor, 0.05), 2000);
     this.centre.x += dx / this.scale - dx / scale;
@@ -57,6 +59,7 @@ class Drawing {
 
   // Moves the plan by CSS pixels.
   pan(dx, dy) {
+    this.isWhole = false;
     this.centre.x -= dx / this.scale;
     this.centre.y += dy / this.scale;
   }
@@ -123,14 +126,44 @@ class Drawing {
     }
   }
 
+  // The options of a ranking: named routes all the time, headings from the start while they hold; that of the trial is solid.
+  options(scene, trace, time) {
+    const { pen, inks } = this;
+    for (const { agent, seconds, routes, headings } of scene.options) {
+      const track = trace.tracks.find((one) => one.agent === agent && one.first === 0);
+      if (!track) continue;
+      const [x, y] = [track.x[0], track.y[0]];
+      const drawn = (label, points) => {
+        pen.strokeStyle = inks.plan;
+        pen.lineWidth = trace.option === label ? 3 : 1.2;
+        pen.setLineDash(trace.option === label ? [] : [5, 4]);
+        this.line(points);
+        pen.setLineDash([]);
+      };
+      for (const { label, points } of routes) {
+        const way = [[x, y]];
+        for (let k = 0; k < points.length; k += 2) way.push([points[k] / 1000, points[k + 1] / 1000]);
+        drawn(label, way);
+        // Its name stands on its first piece.
+        const [mx, my] = [0, 1].map((k) => 0.4 * way[0][k] + 0.6 * way[1][k]);
+        this.label(label.replace('route ', ''), ...this.at(mx, my), inks.plan);
+      }
+      if (time > seconds) continue;
+      for (const { label, toward, turn } of headings) {
+        const angle = Math.atan2(toward[1] / 1000 - y, toward[0] / 1000 - x) + turn;
+        drawn(label, [[x, y], [x + 1.2 * Math.cos(angle), y + 1.2 * Math.sin(angle)]]);
+      }
+    }
+  }
+
   line(points) {
     this.pen.beginPath();
     points.forEach(([x, y]) => this.pen.lineTo(...this.at(x, y)));
     this.pen.stroke();
   }
 
-  // A view: scene, trace, frame, who decided, and whether names and trails are shown.
-  draw({ scene, trace, frame, deciders, names, trails }) {
+  // A view: scene, trace, frame and its time, who decided, and whether names and trails are shown.
+  draw({ scene, trace, frame, time, deciders, names, trails }) {
     const { pen, inks } = this;
     // All pixels: the size in CSS pixels need not be whole.
     pen.setTransform(1, 0, 0, 1, 0, 0);
@@ -140,6 +173,7 @@ class Drawing {
     pen.font = '12px system-ui, sans-serif';
     pen.lineJoin = 'round';
     this.scene(scene);
+    this.options(scene, trace, time);
     const present = trace.tracks.filter((track) => placeAt(track, frame));
     const groups = groupsAt(scene, trace, frame);
     const ink = (track) => {

@@ -31,7 +31,7 @@ function play(data) {
     const frame = Math.min(time / trace.spacing, trace.frames - 1);
     if (trace.frames > 0) {
       const [names, trails] = [byId('names').checked, byId('trails').checked];
-      drawing.draw({ scene, trace, frame, deciders: new Set(entry.agents), names, trails });
+      drawing.draw({ scene, trace, frame, time, deciders: new Set(entry.agents), names, trails });
     }
     range.value = time;
     range.setAttribute('aria-valuetext', said(time));
@@ -124,8 +124,7 @@ function play(data) {
       drawing.shapeTo(box);
       drawing.fit(box);
     }
-    // A reader first sees what decided.
-    go(entry.decided === null ? 0 : entry.decided);
+    go(0);
   }
 
   const redraw = (change) => () => { change(); draw(); };
@@ -146,6 +145,7 @@ function play(data) {
     button.addEventListener('click', () => {
       show(Number(button.dataset.entry));
       byId('player').scrollIntoView();
+      if (entry.decided !== null) go(entry.decided);
       byId('play').focus({ preventScroll: true });
     });
   }
@@ -179,6 +179,8 @@ function play(data) {
   new ResizeObserver(() => {
     if (byId('scene').parentElement.hidden) return;
     drawing.resize();
+    // A plan that nobody has moved stays whole.
+    if (drawing.isWhole && trace.frames > 0) drawing.fit(bounds(scene, trace));
     draw();
   }).observe(byId('scene'));
   themed.push(() => { drawing.readInks(); draw(); });

@@ -33,12 +33,17 @@ function placeAt(track, frame) {
   };
 }
 
-// The direction in which a track moves at a frame, or moved last, rad; null where it never moved.
+// The direction in which a track moves at a frame, or moved last, or will move first, rad; null where it never moves.
 function headingAt(track, frame) {
   const now = Math.min(Math.floor(frame + 1e-9), track.last - 1) - track.first;
   for (let k = Math.max(now, 0); k >= 0 && k + 1 < track.x.length; k -= 1) {
     const [dx, dy] = [track.x[k + 1] - track.x[k], track.y[k + 1] - track.y[k]];
     if (dx * dx + dy * dy > 1e-5) return Math.atan2(dy, dx);
+  }
+  // Somebody who has not moved yet looks to where the first steps lead.
+  for (let k = Math.max(now, 0); k + 1 < track.x.length; k += 1) {
+    const [dx, dy] = [track.x[k + 1] - track.x[0], track.y[k + 1] - track.y[0]];
+    if (dx * dx + dy * dy > 1e-2) return Math.atan2(dy, dx);
   }
   return null;
 }

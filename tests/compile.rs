@@ -33,7 +33,7 @@ fn the_corridor_is_understood() {
     assert_eq!(study.worlds[0].scenario.agents.len(), 18);
     assert_eq!(study.worlds.len(), 3, "the plain one and two sides of the comparison");
     assert_eq!(study.queries.len(), 8);
-    assert_eq!(study.worlds[0].scenario.moves[0].options.len(), 10);
+    assert_eq!(study.worlds[0].scenario.moves[0].options.len(), 11);
 }
 
 /// Somebody alone and two more, with parameters.
@@ -327,7 +327,7 @@ fn what_is_known_now_is_computed_now() {
         scenario.scene.regions[0].shape,
         smc::base::geometry::Shape::Circle { centre: Vec2::new(1.0, 2.0), radius: 5.0 }
     );
-    let (_, Move::Heading(angle)) = scenario.moves[0].options[0] else { panic!("{:?}", scenario.moves) };
+    let (_, Move::Heading(angle)) = scenario.moves[0].options[1] else { panic!("{:?}", scenario.moves) };
     assert!((angle - std::f64::consts::FRAC_PI_4).abs() < 1e-15, "{angle}");
     for (wrong, code) in [
         ("const z = modulo(1, 0)", "E0405"),

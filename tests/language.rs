@@ -328,7 +328,7 @@ fn items_end_with_their_lines() {
 fn the_manual_has_the_table_of_parameters() {
     let root = env!("CARGO_MANIFEST_DIR");
     let read = |path: &str| std::fs::read_to_string(format!("{root}/{path}")).unwrap();
-    let manual = read("docs/language.md");
+    let manual = read("docs/walkers.md");
     let cell = |text: &str| if text.is_empty() { " ".to_owned() } else { format!(" {text} ") };
     for kind in [Kind::Sfm, Kind::Cfs] {
         let mut table =
@@ -345,7 +345,7 @@ fn the_manual_has_the_table_of_parameters() {
                 [format!("`{}`", row.name), row.parameter.unit(), range.into(), default, row.meaning.into()];
             table += &format!("|{}|\n", cells.map(|text| cell(&text)).join("|"));
         }
-        assert!(manual.contains(&table), "docs/language.md should have\n{table}");
+        assert!(manual.contains(&table), "docs/walkers.md should have\n{table}");
     }
     let changeable = Parameter::changeable().map(Parameter::name).collect::<Vec<_>>().join(", ");
     for page in [manual, read("docs/errors/E0911.md")] {

@@ -107,3 +107,24 @@ fn the_examples_run() {
         assert!(output.status.success() && text.contains(expected), "{name}: {text}");
     }
 }
+
+#[test]
+fn results_print_and_serialize_as_the_command_line_does() {
+    let text = "horizon = 10 steps\nparam n = 3\nprocess p { var x: 0 .. 9 = 0; when x < n -> x = x + 1 }";
+    let model = smc::Model::parse(text).unwrap();
+    let report = model.check("check P(F<=5 steps (p.x == 3)) >= 0.9", &smc::Options::default()).unwrap();
+    let shown = report.to_string();
+    assert!(
+        shown.contains("certified: P(F<=5 steps (p.x == 3)) >= 0.9") && !shown.ends_with('\n'),
+        "{shown}"
+    );
+    let result = &report.results()[0];
+    assert!(shown.contains(result.to_string().lines().next().unwrap()), "{result}");
+    assert_eq!(result.certificate.as_ref().unwrap().to_string(), "P >= 0.9, error at most 0.01");
+    let json = serde_json::to_value(&report).unwrap();
+    assert_eq!(json, report.to_json());
+    assert_eq!(serde_json::to_value(result).unwrap(), json["results"][0]);
+    // An error of a parameter names it, and no option of the command line.
+    let wrong = model.with("m", "3").unwrap_err().to_string();
+    assert!(wrong.contains("parameter m:1:1") && !wrong.contains("--set"), "{wrong}");
+}

@@ -27,6 +27,7 @@ mod floors;
 mod forces;
 mod formatter;
 mod gait_measured;
+mod gallery;
 mod intention;
 mod jumps;
 mod lanes;

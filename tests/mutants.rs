@@ -16,7 +16,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 29] = [
+const PAIRS: [(&str, &str); 30] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -27,6 +27,7 @@ const PAIRS: [(&str, &str); 29] = [
     pair!("door"),
     pair!("epidemic"),
     pair!("exits"),
+    pair!("hall"),
     pair!("hotel"),
     pair!("hotel-any"),
     pair!("hotel-groups"),

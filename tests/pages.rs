@@ -87,13 +87,12 @@ fn a_page_says_who_decided_and_when() {
     assert!(bar["text"].as_str().unwrap().contains("gap(a) > 0.3 m"), "{bar}");
     let changes: Vec<f64> = list(bar, "changes").iter().map(|time| time.as_f64().unwrap()).collect();
     assert_eq!(changes[..2], [0.0, witness["time"].as_f64().unwrap()]);
-    // The verdict, its figures, its guarantee and its command come before the player.
-    let head = page.split_once("id=\"player\"").unwrap().0;
-    for said in
-        ["violated", "estimate ", "certified", "smc check m.scn m.bltl --only 0 --seed 3", "class=\"copy\""]
-    {
+    // The verdict, its figures and its guarantee come before the player, its command behind it.
+    let (head, rest) = page.split_once("id=\"player\"").unwrap();
+    for said in ["violated", "<th scope=\"col\">how sure", "certified, error at most"] {
         assert!(head.contains(said), "{said}");
     }
+    assert!(rest.contains("smc check m.scn m.bltl --only 0 --seed 3") && rest.contains("class=\"copy\""));
     assert!(page.contains("States every 0.1 s, positions to 1 mm."));
 }
 

@@ -80,6 +80,13 @@ fn run(page: &str) {
                     assert!(rest.any(|line| is_quoted(wanted, line)), "{page}: `{wanted}` is not in\n{out}");
                 }
             }
+            // A file that begins with its name.
+            "scn" | "bltl" => {
+                let name = lines.first().and_then(|line| line.strip_prefix("// "));
+                if let Some(name) = name.filter(|name| name.ends_with(info) && !name.contains(' ')) {
+                    place.write(name, (lines.join("\n") + "\n").as_bytes());
+                }
+            }
             _ => {}
         }
     }
@@ -94,6 +101,13 @@ fn commands_of_the_page_of_papers_do_what_it_says() {
 #[test]
 fn commands_of_the_pages_behind_it_do_what_they_say() {
     for page in ["gait.md", "planning.md", "perception.md", "replay.md", "advise.md"] {
+        run(page);
+    }
+}
+
+#[test]
+fn commands_of_the_first_pages_do_what_they_say() {
+    for page in ["tutorial.md", "README.md"] {
         run(page);
     }
 }

@@ -137,9 +137,13 @@ fn ties_of_values_and_routes_go_by_order_of_writing() {
         let text = "rank moves of robot by P(F<=1 s (x(robot) < 12 m)) within 0.3\n";
         results(&format!("{far} {{ {moves} }}\n"), text, &[])[0]["choice"].as_str().unwrap().to_owned()
     };
-    assert_eq!(ties("heading 40 deg; route b = goal; route a = goal; heading 10 deg"), "heading 40 deg");
-    assert_eq!(ties("route b = goal; route a = goal"), "route b");
-    assert_eq!(ties("heading 40 deg; heading 10 deg"), "heading 10 deg");
+    assert_eq!(ties("heading 40 deg; route b = goal; route a = goal; heading 10 deg"), "own way");
+    let text = "rank moves of robot by P(F<=1 s (x(robot) < 12 m)) within 0.3\n";
+    let all =
+        &results(&format!("{far} {{ route b = goal; route a = goal; stop }}\n"), text, &[])[0]["options"];
+    let order: Vec<&str> =
+        all.as_array().unwrap().iter().map(|one| one["option"].as_str().unwrap()).collect();
+    assert_eq!(order, ["own way", "route b", "route a", "stop"]);
 }
 
 /// A named route replaces the own one: the trial is that of an agent which was declared with it.

@@ -100,6 +100,7 @@ fn examine(case: &Case<'_>, base: &str) -> (Vec<Diagnostic>, Vec<Source>) {
         scenario: "model.scn",
         properties: &properties,
         settings: &settings,
+        setting: "--set",
         velocity: None,
         models: &[],
         calibration: None,

@@ -37,6 +37,7 @@ fn parsed(scenario: &str, properties: &str, tracks: &str) -> Parsed {
         scenario: "a.scn",
         properties: &["a.bltl".to_owned()],
         settings: &[],
+        setting: "--set",
         velocity: None,
         models: &[],
         calibration: None,

@@ -230,6 +230,7 @@ fn rank() -> QueryResult {
         stopped_by: Stop::Width,
         rank: Some(Ranking {
             choice: Some("heading 15 deg".into()),
+            means: None,
             gap: 0.017_23,
             tied: true,
             options: vec![

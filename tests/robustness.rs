@@ -77,7 +77,7 @@ rank moves of user by E(robustness(safe)) in -1.2 m .. 5 m within 0.3 m
 compare E(robustness(safe)) in -1.2 m .. 5 m under density = 0.1 /m^2 with density = 0.9 /m^2
 ";
     let found = results(properties, &["--max-trials", "600"]);
-    assert_eq!(found[0]["options"].as_array().unwrap().len(), 4, "{}", found[0]);
+    assert_eq!(found[0]["options"].as_array().unwrap().len(), 5, "{}", found[0]);
     assert!(found[0]["certifies"].as_str().unwrap().contains("E(robustness(safe))"));
     assert!(found[1]["estimate"].as_f64().unwrap() > 0.0, "fewer people, more room: {}", found[1]);
     let threads = results(properties, &["--max-trials", "600", "-j", "1"]);

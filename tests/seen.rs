@@ -143,7 +143,7 @@ fn whoever_goes_on_keeps_the_remembered_velocity() {
 fn moves_may_belong_to_one_body() {
     let moves = "moves party for 1 s { heading -30 deg; heading 30 deg; stop }";
     let party = format!("group party: adult as particle from here at 1 s group of 1\n{moves}");
-    assert_eq!(scenario("", &party).moves[0].options.len(), 3);
+    assert_eq!(scenario("", &party).moves[0].options.len(), 4);
     let many = format!("groups party: adult as particle from here at 1 s\n{moves}");
     assert!(refused("", &many).contains("moves must belong to one agent"));
 }

@@ -237,7 +237,7 @@ fn advice_holds_from_the_end_of_a_step() {
     let report = ask(&model, query);
     let rank = report.results()[0].rank.as_ref().unwrap();
     let order: Vec<&str> = rank.options.iter().map(|option| option.label.as_str()).collect();
-    assert_eq!(order, ["heading 30 deg", "stop", "heading -20 deg"]);
+    assert_eq!(order, ["heading 30 deg", "own way", "stop", "heading -20 deg"]);
     let stands = "estimate P(G<=3 s (speed(me) < 0.01 m/s)) by fixed(trials = 10)";
     assert!(value(&model, stands) < 0.5, "without advice it walks");
 }

@@ -81,8 +81,8 @@ fn called(cell: &str) -> Vec<&str> {
 
 #[test]
 fn functions_in_the_manual_are_those_of_the_table_with_their_units() {
-    let manual = text("docs/language.md");
-    let section = manual.split("\n### ").find(|section| section.starts_with("Functions\n")).unwrap();
+    let manual = text("docs/properties.md");
+    let section = manual.split("\n## ").find(|section| section.starts_with("Functions\n")).unwrap();
     let mut units = 0;
     for line in section.lines().filter(|line| line.starts_with("| `")) {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();

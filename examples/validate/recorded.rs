@@ -88,6 +88,7 @@ fn of_recording(
             scenario: MODEL,
             properties: &properties,
             settings,
+            setting: "--set",
             velocity: None,
             models: &[],
             calibration: None,

@@ -131,13 +131,13 @@ pub(super) struct Questions {
     /// Largest number of trials of a ranking, over all its options.
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) total_trials: Option<u64>,
-    /// Format of the results on standard output: `text` (unless set), `brief`, `json`, `csv`, `junit` or `github`. With a file,
+    /// Format of the results on standard output: `text` (unless set), `verbose`, `brief`, `json`, `csv`, `junit` or `github`. With a file,
     /// as in `--format csv=results.csv`, they are also written there. May be given several times.
     #[arg(long, value_name = "FORMAT[=FILE]")]
     pub(super) format: Vec<Destination>,
-    /// Print one line a query, as `--format brief` does.
-    #[arg(long)]
-    pub(super) brief: bool,
+    /// How much of the text is printed.
+    #[command(flatten)]
+    pub(super) detail: Detail,
     /// Also write a self-contained HTML page with charts and a player of the trials behind the results.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
@@ -154,6 +154,17 @@ pub(super) struct Questions {
     /// Show no progress and no forecast on standard error.
     #[arg(short, long)]
     pub(super) quiet: bool,
+}
+
+/// How much of the text is printed.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct Detail {
+    /// Print the procedure of each query with all its numbers, too, as `--format verbose` does.
+    #[arg(short, long)]
+    pub(super) verbose: bool,
+    /// Print one line a query, as `--format brief` does.
+    #[arg(long)]
+    pub(super) brief: bool,
 }
 
 /// `smc check`

@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         deadline.enter(Phase::Printing);
     }
     complaint::diagnose(&inputs, colors);
-    let outputs = Outputs::new(&arguments.format, arguments.brief, arguments.report.as_deref(), &paths);
+    let outputs = Outputs::new(&arguments.format, short(arguments), arguments.report.as_deref(), &paths);
     let mut study = inputs.study.take();
     let mut reporter = Reporter {
         arguments,
@@ -193,7 +193,7 @@ impl Reporter<'_> {
         self.deadline.enter(Phase::Printing);
         let text = match self.outputs.screen {
             Format::Json => report::forecast::json(total),
-            Format::Text => visible(&report::forecast::text(total)).into_owned(),
+            Format::Text | Format::Verbose => visible(&report::forecast::text(total)).into_owned(),
             _ => {
                 return self.refuse(complaint::argument(
                     "`--forecast` supports only `--format text` and `--format json`",
@@ -349,10 +349,16 @@ fn for_machines(chosen: Format, run: &CallResult) {
     }
 }
 
+/// The format for standard output that has an option of its own.
+fn short(arguments: &Questions) -> Option<Format> {
+    let chosen = [(arguments.detail.brief, Format::Brief), (arguments.detail.verbose, Format::Verbose)];
+    chosen.into_iter().find_map(|(is_chosen, format)| is_chosen.then_some(format))
+}
+
 /// The format that a call prints.
 pub(super) fn screen(arguments: &Questions) -> Format {
     let printed = arguments.format.iter().find(|destination| destination.file.is_none());
-    printed.map_or(if arguments.brief { Format::Brief } else { Format::Text }, |one| one.format)
+    printed.map(|one| one.format).or_else(|| short(arguments)).unwrap_or_default()
 }
 
 /// File and line of a place.
@@ -364,7 +370,8 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 /// The files and settings of the call.
 fn line(arguments: &Questions) -> CommandLine {
     let line = page::line(&arguments.model);
-    CommandLine { properties: arguments.properties.clone(), ..line }
+    let properties = arguments.properties.iter().map(|path| page::relative(path)).collect();
+    CommandLine { properties, ..line }
 }
 
 // The places and formats of the results of a call: one goes to standard output, each of the others into a file.
@@ -385,12 +392,12 @@ impl Outputs {
     /// Two formats want standard output or one file, or a file is one that the call reads.
     fn new(
         chosen: &[Destination],
-        is_brief: bool,
+        short: Option<Format>,
         page: Option<&Path>,
         inputs: &[PathBuf],
     ) -> Result<Self, Diagnostic> {
         let printed = chosen.iter().filter(|destination| destination.file.is_none()).map(|one| one.format);
-        let mut printed = printed.chain(is_brief.then_some(Format::Brief));
+        let mut printed = printed.chain(short);
         let screen = printed.next().unwrap_or(Format::Text);
         if printed.next().is_some() {
             return Err(complaint::argument(

@@ -43,9 +43,25 @@ pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
         return whole(std::io::stdin().lock()).map_err(|error| format!("standard input {error}"));
     }
     read_file(Path::new(name)).map_err(|error| match error {
-        Unread::Missing => format!("the file `{name}` does not exist"),
+        Unread::Missing => format!("the file `{name}` does not exist{}", others(Path::new(name))),
         error => format!("`{name}` {error}"),
     })
+}
+
+/// The files beside one that is missing, with its extension; nothing if there are none or many.
+fn others(missing: &Path) -> String {
+    let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.map(|entry| entry.path()).filter(|path| path.extension() == missing.extension());
+    let mut names: Vec<String> =
+        names.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect();
+    names.sort();
+    let wanted = missing.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    match (crate::compile::nearest::nearest(wanted, names.iter().map(String::as_str)), names.len()) {
+        (Some(name), _) => format!("; did you mean `{name}`?"),
+        (None, 1..=4) => format!("; the folder has {}", names.join(", ")),
+        _ => String::new(),
+    }
 }
 
 /// Why an input has no bytes, after its name.
@@ -162,6 +178,7 @@ fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
         scenario: &model.scenario,
         properties,
         settings: &model.set,
+        setting: "--set",
         velocity: model.velocity,
         models: &model.models,
         calibration: model.calibration.as_deref(),

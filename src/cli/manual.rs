@@ -28,8 +28,8 @@ pub(super) fn pages(arguments: &Man) -> Result<(), Diagnostic> {
 
 // `smc explain`: what a code means and what to do, what a procedure takes and guarantees, what a function gives.
 
-/// The manual of the language.
-const MANUAL: &str = include_str!("../../docs/language.md");
+/// The page of functions and formulas.
+const MANUAL: &str = include_str!("../../docs/properties.md");
 
 /// Runs the command.
 pub(super) fn explain(arguments: &Explain) -> Result<(), Diagnostic> {
@@ -59,7 +59,7 @@ pub(super) fn explain(arguments: &Explain) -> Result<(), Diagnostic> {
 
 /// What the manual says of a function: its row in the table of functions, or the paragraph in which it stands.
 fn function(built_in: &BuiltIn) -> Option<String> {
-    let (_, manual) = MANUAL.split_once("\n## Properties\n")?;
+    let manual = MANUAL;
     let (call, name) = (format!("`{}(", built_in.name), format!("`{}`", built_in.name));
     // A table has a column of units, or none.
     let row = |is_call: bool| {

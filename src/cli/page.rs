@@ -24,13 +24,27 @@ pub(super) fn write(path: &Path, page: Page<'_>, colors: Colors) -> Exit {
 /// The files and settings of a call without properties.
 pub(super) fn line(model: &Model) -> CommandLine {
     CommandLine {
-        scenario: model.scenario.clone(),
+        scenario: relative(&model.scenario),
         settings: model.set.clone(),
         data: model.data.iter().map(|data| data.display().to_string()).collect(),
         velocity: model.velocity.map(|velocity| velocity.name().to_owned()),
         models: model.models.clone(),
         ..CommandLine::default()
     }
+}
+
+/// A path below the current folder without the path of that folder, so that a command can be repeated elsewhere.
+pub(super) fn relative(path: &str) -> String {
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "commands on a page name files as from the folder of the call"
+    )]
+    let folder = std::env::current_dir();
+    let below = folder.ok().and_then(|folder| {
+        let rest = Path::new(path).strip_prefix(folder).ok()?;
+        Some(rest.display().to_string())
+    });
+    below.filter(|rest| !rest.is_empty()).unwrap_or_else(|| path.to_owned())
 }
 
 /// Trials that a page plays without results.

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
 /// Forecasts shorter than this are not shown, s.
-const WORTH_TELLING: f64 = 2.0;
+const WORTH_TELLING: f64 = 10.0;
 
 /// Shows how far a query is.
 pub(super) struct Progress {

@@ -54,6 +54,8 @@ pub struct Names<'a> {
     pub properties: &'a [String],
     /// Values of parameters: `density=0.8 /m^2`, or a sweep: `density=0.1..0.8 by 0.1`, `n=2,4,8`.
     pub settings: &'a [String],
+    /// The place of an error in such a value, before the name of the parameter: `--set`.
+    pub setting: &'static str,
     /// Which velocities recordings have, whatever the scenario says.
     pub velocity: Option<Velocity>,
     /// Presets of people under each of which all queries are asked; empty if the scenario alone says who walks.
@@ -113,7 +115,7 @@ impl Parsed {
 
 /// Reads and parses what a call names.
 pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
-    let mut reader = Reader { folder, inputs: Inputs::default() };
+    let mut reader = Reader { folder, setting: names.setting, inputs: Inputs::default() };
     let mut complete = true;
     let mut scenario = ScenarioFile::default();
     let mut properties = Vec::new();
@@ -234,6 +236,7 @@ fn examined(input: &Input<'_>, said: &[Diagnostic], files: usize) -> (Option<Stu
 
 struct Reader<'f> {
     folder: &'f mut dyn Folder,
+    setting: &'static str,
     inputs: Inputs,
 }
 
@@ -304,7 +307,7 @@ impl Reader<'_> {
             return None;
         };
         let (name, value) = (name.trim(), value.trim());
-        let label = format!("--set {name}");
+        let label = format!("{} {name}", self.setting);
         let value = match value.split_once("..") {
             None => {
                 let parts = split_values(value).into_iter().map(|part| self.expression(&label, part));

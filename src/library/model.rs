@@ -88,6 +88,7 @@ impl Draft {
                 scenario: &self.name,
                 properties: &names,
                 settings: &settings,
+                setting: "parameter",
                 velocity: None,
                 models: &[],
                 calibration: None,

@@ -3,12 +3,28 @@
 use super::diagnostics::Diagnostics;
 use crate::engine::outcome::{CallResult, QueryResult, Verdict};
 use crate::report::{ExitCode, Format, Palette, exit_code, render};
+use serde::{Serialize, Serializer};
+use std::fmt;
 
 /// The results of a check.
 #[derive(Clone, Debug)]
 pub struct Report {
     run: CallResult,
     warnings: Diagnostics,
+}
+
+impl fmt::Display for Report {
+    /// As `smc check` prints it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.run.fmt(f)
+    }
+}
+
+impl Serialize for Report {
+    /// As `--format json` writes it.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.run.serialize(serializer)
+    }
 }
 
 impl Report {
@@ -44,6 +60,11 @@ impl Report {
     /// Everything that the run has computed, with what ended it early.
     pub fn run(&self) -> &CallResult {
         &self.run
+    }
+
+    /// The report as a JSON value, as `--format json` writes it.
+    pub fn to_json(&self) -> serde_json::Value {
+        crate::report::json::object(&self.run)
     }
 
     /// The report in one of the formats of the command line.

@@ -1,5 +1,5 @@
 //! The built-in functions of the language, in one table: names, arguments, and the dimensions of what they give. What they
-//! give is computed by the kernel (`kernel/code`), and described in `docs/language.md`.
+//! give is computed by the kernel (`kernel/code`), and described in `docs/properties.md`.
 
 use super::expression::{Arithmetic, Axis, Function};
 use super::index::BehaviourId;

@@ -45,6 +45,8 @@ pub enum Move {
     Heading(f64),
     /// Driving velocity zero.
     Stop,
+    /// No advice: the agent goes on as it would.
+    Own,
     /// Take this one of the routes instead of the own one, for good.
     Route(usize),
     /// Take the path of this class on the roadmap.
@@ -55,6 +57,7 @@ impl Move {
     /// How far it departs from the direct way, rad; a stop departs most, and of a route or path nobody knows.
     fn deviation(self) -> f64 {
         match self {
+            Self::Own => 0.0,
             Self::Heading(angle) => angle.abs(),
             Self::Stop | Self::Route(_) | Self::Path(_) => f64::INFINITY,
         }

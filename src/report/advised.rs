@@ -7,7 +7,9 @@ use crate::data::tracks::Batch;
 use crate::engine::outcome::{CallResult, Interval};
 use crate::engine::traces::{Traces, Walk, recorded};
 use crate::model::Scene;
+use crate::perception::{ConstantVelocity, Inferring, infer};
 use crate::report::html::{Page, Table};
+use crate::report::infer::traces;
 use crate::report::number::{count, counted, interval, plain, thousandths};
 use crate::stats::bootstrap::{Bootstrap, DRAWS};
 use crate::syntax::source::Source;
@@ -107,17 +109,13 @@ pub fn table_of_users(users: &[User], seed: u64) -> String {
 
 /// The page.
 pub fn to_page(advised: Advised, sources: &[Source]) -> Page<'_> {
-    let (walks, unnamed) = walks(&advised);
+    let walks = walks(&advised);
     let Advised { title, scene, seed, cycles, followed, end, .. } = advised;
     let trace = recorded(&title, scene, &walks);
     let mut tables = vec![cycles_table(&cycles)];
     tables.extend(end.map(|[advised, recorded]| ends_table(&advised, &recorded)));
-    let mut warnings = Vec::new();
-    if unnamed > 0 {
-        warnings.push(format!("the player leaves out {} observations without an id", count(unnamed)));
-    }
     Page {
-        run: CallResult { warnings, ..CallResult::of(title, seed) },
+        run: CallResult::of(title, seed),
         sources,
         tables,
         traces: Traces { list: trace.into_iter().collect(), left_out: 0 },
@@ -125,16 +123,18 @@ pub fn to_page(advised: Advised, sources: &[Source]) -> Page<'_> {
     }
 }
 
-/// The people of the recording by their ids, and how many observations have none.
-fn walks(advised: &Advised) -> (Vec<Walk>, u64) {
+/// The people of the recording by their ids, and the traces of observations without one, as `smc infer` finds them.
+fn walks(advised: &Advised) -> Vec<Walk> {
     let mut people: BTreeMap<u32, Vec<(f64, Vec2)>> = BTreeMap::new();
-    let mut unnamed = 0;
+    let mut unnamed = advised.batches.clone();
+    for batch in &mut unnamed {
+        batch.seen.retain(|one| one.id.is_none());
+    }
+    let inferred = infer(&unnamed, &Inferring::default(), &mut ConstantVelocity);
+    let inferred = inferred.map(|found| traces(&found)).unwrap_or_default();
     for batch in &advised.batches {
         for one in &batch.seen {
-            let Some(id) = one.id else {
-                unnamed += 1;
-                continue;
-            };
+            let Some(id) = one.id else { continue };
             let points = people.entry(id).or_default();
             // Several sensors may see somebody at one time.
             if points.last().is_none_or(|(time, _)| *time < batch.time) {
@@ -153,7 +153,7 @@ fn walks(advised: &Advised) -> (Vec<Walk>, u64) {
         parts.map(|points| Walk { name: name(*id), points: points.to_vec(), groups: Vec::new() })
     });
     let followed = Walk { name: "user".to_owned(), points: advised.followed.clone(), groups: Vec::new() };
-    (stretches.chain(is_followed.then_some(followed)).collect(), unnamed)
+    stretches.chain(inferred).chain(is_followed.then_some(followed)).collect()
 }
 
 /// Time to a thousandth, without a rounding error at its end.

@@ -10,6 +10,7 @@ use crate::engine::outcome::{
     CallResult, Comparison, Counts, Distribution, Every, Evidence, Finding, Interval, Method, QueryResult,
     Ranking, Shows, Side, Snapshot, Standing, UnderOne, Verdict, Witness,
 };
+use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 /// Below this doubles tell all whole numbers apart.
@@ -46,6 +47,20 @@ pub fn object(run: &CallResult) -> Value {
         object["error"] = json!({ "bug": failure.is_bug(), "message": failure.message() });
     }
     object
+}
+
+impl Serialize for QueryResult {
+    /// As in the JSON report.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        result(self).serialize(serializer)
+    }
+}
+
+impl Serialize for CallResult {
+    /// As the JSON report.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        object(self).serialize(serializer)
+    }
 }
 
 /// A number; one without a fraction is written without one, so that counts are whole.
@@ -115,8 +130,11 @@ pub(super) fn result(result: &QueryResult) -> Value {
         put("second", side(second));
         put("difference", side(difference));
     }
-    if let Some(Ranking { choice, gap, tied, options }) = &result.rank {
+    if let Some(Ranking { choice, means, gap, tied, options }) = &result.rank {
         put("choice", json!(choice));
+        if let Some(means) = means {
+            put("means", json!(means));
+        }
         put("gap", number(*gap));
         put("tied", json!(tied));
         let options = options.iter().map(|option| {

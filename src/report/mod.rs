@@ -1,7 +1,7 @@
 //! Floor 8: reports of a run, one file per format.
 //!
 //! A report is a function of a [`CallResult`]; no clock and no environment. What a verdict must say follows
-//! `docs/language.md`: the certified statement, the estimate with its interval and the kind of that
+//! `docs/results.md`: the certified statement, the estimate with its interval and the kind of that
 //! interval, all counts, why sampling stopped, and the command that gives the result again.
 
 pub mod advice;
@@ -47,6 +47,8 @@ pub enum Format {
     /// For people.
     #[default]
     Text,
+    /// For people who check the numbers: text with the procedure of each query and all its numbers.
+    Verbose,
     /// For people in a hurry: one line a query.
     Brief,
     /// A table, one row a result, an option or a side.
@@ -62,14 +64,17 @@ pub enum Format {
 impl Format {
     /// Whether programs read it, who want an answer in every case.
     pub const fn is_for_programs(self) -> bool {
-        !matches!(self, Self::Text | Self::Brief)
+        !matches!(self, Self::Text | Self::Verbose | Self::Brief)
     }
 }
 
 /// The report of a run, ending with a line end. Only text for people uses the palette.
 pub fn render(run: &CallResult, format: Format, palette: Palette) -> String {
     match format {
-        Format::Text => painted(&text::render(run, Palette::PLAIN), &text::render(run, palette)),
+        Format::Text | Format::Verbose => {
+            let text = |palette| text::render(run, palette, format == Format::Verbose);
+            painted(&text(Palette::PLAIN), &text(palette))
+        }
         Format::Brief => painted(&brief::render(run, Palette::PLAIN), &brief::render(run, palette)),
         Format::Csv => visible(&csv::render(run)).into_owned(),
         Format::Json => json::render(run),

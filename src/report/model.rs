@@ -176,7 +176,7 @@ fn people(out: &mut String, world: &World) {
                 .routes
                 .get(*number)
                 .map_or_else(String::new, |route| format!("{label} ({})", way(scenario, route))),
-            Move::Heading(_) | Move::Stop | Move::Path(_) => label.clone(),
+            Move::Heading(_) | Move::Stop | Move::Own | Move::Path(_) => label.clone(),
         };
         if moves.paths.is_some() {
             let name = &scenario.agents[moves.agent.0 as usize].name;

@@ -14,7 +14,7 @@ pub enum Decision {
 }
 
 /// What a decision certifies about P.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub enum Claim {
     /// P > the number.
     Above(f64),

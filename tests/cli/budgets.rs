@@ -81,7 +81,7 @@ fn what_falls_short_says_so() {
     let estimate = "estimate P(F<=3 s (speed(user) > 1.2 m/s)) within 0.05\n";
     let whole = call(estimate, &[]);
     assert!(whole.code == Some(0) && !whole.out.contains("incomplete"), "{}", whole.out);
-    assert!(whole.out.contains("1 computed; "), "{}", whole.out);
+    assert!(whole.out.contains("1 estimated; "), "{}", whole.out);
     for (words, word, said) in [
         (["--max-trials", "9"], "incomplete", "incomplete: too few trials for the requested result"),
         (["--max-trials", "0"], "not begun", "not begun: the budget has no trial"),
@@ -106,7 +106,7 @@ fn shared_trials_are_counted_once() {
         estimate E(max<=1 s (speed(user))) in 0 m/s .. 5 m/s by fixed(trials = 70)\n";
     place.write("a.bltl", properties.as_bytes());
     let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
-    assert!(said.out.contains("3 computed; 80 trials in "), "{}", said.out);
+    assert!(said.out.contains("3 estimated; 80 trials in "), "{}", said.out);
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn a_wrong_call_has_a_code_and_a_hint() {
         ),
         (&["simulate", "a.scn", "--until", "900"], "E0705", "horizon"),
         (&["simulate", "a.scn", "--trials", "0"], "E0705", "from 1"),
-        (&["simulate", "a.scn", "--move", "heading 0.5 rad"], "E0705", "the moves are heading"),
+        (&["simulate", "a.scn", "--move", "heading 0.5 rad"], "E0705", "the moves are own way"),
         (&["simulate", "a.scn", "--output", "none/a.csv"], "E0706", "the folder"),
         (&["fmt", "a.txt"], "E0705", "--language"),
         (&["fmt", "none.scn"], "E0701", "relative"),
@@ -226,7 +226,7 @@ fn a_ranking_with_few_trials_takes_those_there_are() {
     ]);
     let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "5"];
     let result = place.call(&words).json()["results"][0].clone();
-    assert_eq!(result["trials"], 20, "five of each of four options");
+    assert_eq!(result["trials"], 25, "five of each of five options");
     assert!(result["choice"].is_string(), "{result:#}");
 }
 
@@ -270,7 +270,7 @@ rank moves of wild by P(onward) within 0.1
     assert!(!text.contains("narrow enough") && !text.contains("boundary"), "{text}");
     // The command of the warning shows the trial.
     let warning = json["results"][2]["warnings"][0].as_str().unwrap();
-    assert!(warning.ends_with("--move 'heading -30 deg'"), "{warning}");
+    assert!(warning.ends_with("--move 'own way'"), "{warning}");
 }
 
 #[test]

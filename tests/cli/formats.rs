@@ -118,7 +118,10 @@ fn several_formats_in_one_call() {
         (["--format", "csv=a", "--report", "a"], "two results are to be written to `a`"),
         (["--format", "csv=a.scn", "--format", "json"], "would overwrite the input `a.scn`"),
         (["--format", "csv=", "--format", "json"], "the name of the file is missing"),
-        (["--format", "xml", "--format", "json"], "the formats are text, brief, csv, json, junit, github"),
+        (
+            ["--format", "xml", "--format", "json"],
+            "the formats are text, verbose, brief, csv, json, junit, github",
+        ),
         (["--format", "csv=none/a", "--format", "json"], "`none/a` cannot be written"),
     ] {
         let said = call(&words);

@@ -1,4 +1,4 @@
-//! Demands on a model of gait, measured on recorded steps: `docs/gait.md`, "Shown on real steps".
+//! Demands on a model of gait, measured on recorded steps: `docs/gait-measured.md`.
 //!
 //! ```sh
 //! cargo test --release --test suite gait_measured -- --ignored --nocapture

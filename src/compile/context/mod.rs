@@ -26,6 +26,7 @@ pub(crate) mod wording;
 pub(crate) use lowered::{Locals, Lowered, MOST_NODES, Reported};
 
 use crate::base::geometry::Shape;
+use crate::compile::context::symbols::Meaning;
 use crate::compile::context::{
     clock::Time,
     conducts::Conducts,
@@ -148,7 +149,34 @@ impl<'a> Context<'a> {
     /// Expected one thing, found another.
     pub(crate) fn mismatch<T>(&mut self, span: Span, expected: &str, found: &Typed) -> Lowered<T> {
         let error = error!(E0305, span, "expected {expected}, found {}", found.noun());
+        let error = match self.other_kind(span, expected, found) {
+            Some(hint) => error.hint(hint),
+            None => error,
+        };
         self.report(error)
+    }
+
+    /// The text to write where one kind of value was expected and another one found.
+    fn other_kind(&self, span: Span, expected: &str, found: &Typed) -> Option<String> {
+        let text = Some(self.text(span)).filter(|text| text.len() <= 60 && !text.is_empty())?;
+        match (expected, found) {
+            ("a number", Typed::Truth(..)) => {
+                Some(format!("write `if({text}, 1, 0)`; its probability is `P({text})`"))
+            }
+            ("a condition", Typed::Number(_) | Typed::Num(..) | Typed::Term(..)) => {
+                Some(format!("compare it with a value: `{text} > …`"))
+            }
+            ("a line", _) => {
+                let lines = || self.names.scopes.first().into_iter().flat_map(Scope::entries);
+                let lines = lines().filter(|(_, entry)| matches!(entry.meaning, Meaning::Line(_)));
+                let lines: Vec<String> = lines.map(|(name, _)| name.to_owned()).collect();
+                Some(match lines.as_slice() {
+                    [] => "declare one in the scene: `line gate: (6, 0) -- (6, 3)`".to_owned(),
+                    known => format!("the scene declares the lines {}", known.join(", ")),
+                })
+            }
+            _ => None,
+        }
     }
 
     /// Two dimensions that ought to be one.
@@ -179,6 +207,12 @@ impl<'a> Context<'a> {
         }
         if let Some(number) = single_number(&text).filter(|_| !found.is_none() && !expected.is_none()) {
             error = error.hint(format!("write `{number} {expected}`"));
+        }
+        if expected.is_none() && !found.is_none() && text.len() <= 60 {
+            error = error.hint(match single_number(&text) {
+                Some(number) => format!("write `{number}`"),
+                None => format!("divide it by a unit: `({text}) / 1 {found}`"),
+            });
         }
         let is_bare = found.is_none() && !expected.is_none();
         if is_bare {

@@ -351,7 +351,8 @@ impl Context<'_> {
             span,
             "`{}` needs {wanted}, but {found} {} given",
             function.name,
-            if found == 1 { "is" } else { "are" }
+            if found == 1 { "is" } else { "are" };
+            hint: "`smc explain {}` shows how it is called", function.name
         ));
         let _ = self.lower_all(arguments, locals);
         Err(Reported)

@@ -12,6 +12,7 @@ use crate::compile::lower::{
 use crate::compile::scene::periodic;
 use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
 use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 
 /// Most options of a `moves` declaration.
@@ -136,6 +137,8 @@ fn lower_moves<'a>(context: &mut Context<'a>, decl: &'a MovesDecl, people: &Peop
         return context.report(error!(E0406, decl.span, "the moves have no option";
                     hint: "write for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"));
     }
+    // The agent's own way is always an option.
+    options.insert(0, ("own way".to_owned(), Move::Own));
     Ok(Moves { agent, duration, options, routes, paths: None })
 }
 
@@ -177,7 +180,19 @@ fn advised_agent(
         },
         None => plain,
     };
-    let typed = context.lower(&expr, &Locals::default())?;
+    let lowered = context.lower(&expr, &Locals::default());
+    if lowered.is_err()
+        && let Some(error) = context.sink.diagnostics.last_mut()
+        && error.code == Code::E0201
+        && error.hint.is_none()
+    {
+        let names = context.roster.agent_names.iter().map(|name| name.split('[').next().unwrap_or(name));
+        let mut names: Vec<&str> = names.collect();
+        names.dedup();
+        error.hint =
+            Some(format!("the scenario declares {}", names.join(", "))).filter(|_| !names.is_empty());
+    }
+    let typed = lowered?;
     let is_one = matches!(&typed, Typed::Agents { set, particle: true } if set.members.len() == 1);
     if matches!(typed, Typed::Agents { .. }) && !is_one {
         let said = format!("{what} must belong to one agent");
@@ -289,7 +304,7 @@ fn heading(
             let turns = (angle - known) / std::f64::consts::TAU;
             (turns - turns.round()).abs() < 1e-9
         }
-        Move::Stop | Move::Route(_) | Move::Path(_) => false,
+        Move::Stop | Move::Own | Move::Route(_) | Move::Path(_) => false,
     };
     if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
         let text = if *known == label {

@@ -129,7 +129,8 @@ pub(crate) fn in_range(
         let at = if number.value < low.value { at.0 } else { at.1 };
         let [low, high] = [low, high].map(|n| shown(context, param, n));
         let said = format!("`{name}` must be between {low} and {high}");
-        return context.report(error!(E0405, at, "{said}").hanging_on(place));
+        let error = error!(E0405, at, "{said}"; hint: "the range is that of its declaration in the scenario");
+        return context.report(error.hanging_on(place));
     }
     Ok(())
 }

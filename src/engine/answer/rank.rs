@@ -9,7 +9,9 @@ use crate::engine::sampling::rank::{RankOutcome, RankSampling};
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::Forecast;
 use crate::engine::trials::executor::Executor;
+use crate::engine::trials::prepared::PreparedWorld;
 use crate::engine::witness;
+use crate::model::Move;
 use crate::stats::Coverage;
 use crate::trials::budget::Budget;
 impl<'q> Sampling<'q> for RankSampling<'q> {
@@ -28,6 +30,15 @@ impl<'q> Sampling<'q> for RankSampling<'q> {
         };
         Ok(Turn::Over(vec![(self.place, answers.rank(self, ranked)?)], None))
     }
+}
+
+/// What an agent does that is advised to stop.
+fn means(prepared: &PreparedWorld, advice: Option<(usize, usize)>) -> Option<String> {
+    let scenario = &prepared.program.scenario;
+    let moves = scenario.moves.get(advice?.0)?;
+    let is_stop = moves.options.get(advice?.1).is_some_and(|(_, option)| *option == Move::Stop);
+    let seconds = scenario.clock.seconds(moves.duration);
+    is_stop.then(|| format!("waits {seconds} s, then takes its own way"))
 }
 
 impl Answers<'_> {
@@ -62,7 +73,8 @@ impl Answers<'_> {
         let arm = columns.min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or_default();
         let (own, prepared, column) = (settings(arm), setup.worlds[arm], options[arm].target.column);
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
-        let listed = tables::ranked(&ranked, options, models, query.every.as_ref());
+        let mut listed = tables::ranked(&ranked, options, models, query.every.as_ref());
+        listed.means = listed.choice.is_some().then(|| means(prepared, options[arm].advice)).flatten();
         let score = words::measured(query, measure, joined.clipped);
         if let Some(choice) = &listed.choice {
             if listed.gap < ranked.scale {

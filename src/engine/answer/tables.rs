@@ -103,5 +103,6 @@ pub(in crate::engine) fn ranked(
         .collect();
     let gap = if chosen { choice.gap * ranked.scale } else { f64::INFINITY };
     let tied = listed.iter().any(|option| option.status == Status::Tied);
-    Ranking { choice: chosen.then(|| options[choice.arm * models].label.clone()), gap, tied, options: listed }
+    let choice = chosen.then(|| options[choice.arm * models].label.clone());
+    Ranking { choice, means: None, gap, tied, options: listed }
 }

@@ -17,6 +17,7 @@ pub use distribution::{Distribution, Histogram, Quantile, Step};
 pub use every::{Every, UnderOne};
 pub use evidence::{Evidence, Snapshot, Standing, next_after};
 pub use ranking::{RankedOption, Ranking, Status};
+use std::fmt;
 pub use witness::{Shows, Witness};
 
 /// Everything one call has computed.
@@ -334,7 +335,7 @@ pub struct Side {
 // The certificate of a result in numbers. `QueryResult::certifies` says the same in words.
 
 /// A claim about the quantity of a query, and how surely it holds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Certificate {
     /// What is claimed.
     pub claim: Certified,
@@ -342,8 +343,24 @@ pub struct Certificate {
     pub error: f64,
 }
 
+impl fmt::Display for Certificate {
+    /// `P > 0.48, error at most 0.01`; numbers in the unit of the result.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.claim {
+            Certified::Decided(Claim::Above(p)) => write!(f, "P > {p}"),
+            Certified::Decided(Claim::AtLeast(p)) => write!(f, "P >= {p}"),
+            Certified::Decided(Claim::Below(p)) => write!(f, "P < {p}"),
+            Certified::Decided(Claim::AtMost(p)) => write!(f, "P <= {p}"),
+            Certified::Decided(Claim::Between(low, high)) => write!(f, "{low} < P < {high}"),
+            Certified::Between { low, high } => write!(f, "between {low} and {high}"),
+            Certified::Best { choice, gap } => write!(f, "`{choice}` is within {gap} of the best"),
+        }?;
+        write!(f, ", error at most {}", self.error)
+    }
+}
+
 /// What is claimed, in the unit of the result.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub enum Certified {
     /// A test has decided. For the check of a quantile it is about the probability that `QueryResult::of` names.
     Decided(Claim),

@@ -8,6 +8,8 @@ use super::{Interval, Side};
 pub struct Ranking {
     /// The recommended option; `None` where nothing was sampled, or no trial is resolved.
     pub choice: Option<String>,
+    /// The agent's doing where the choice does not say it: `waits 2 s, then takes its own way`.
+    pub means: Option<String>,
     /// Certified: the choice is at most so much worse than the best. All that there can be where nothing is known yet;
     /// infinite where nothing is chosen.
     pub gap: f64,

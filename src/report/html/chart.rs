@@ -1,4 +1,6 @@
-//! A chart of intervals in SVG: one row per number, a dot for the estimate and a bar from end to end.
+//! A chart of intervals: one row per number with its label, a bar from end to end with a dot for the estimate, and the numbers in
+//! words. The rows share an axis; on a narrow screen label, bar and numbers stand below each other. Places along the axis are shares
+//! of its width, so that a row fits any width.
 
 use crate::engine::outcome::Interval;
 use crate::report::escape::escape;
@@ -7,13 +9,6 @@ use crate::report::palette::Paint;
 use crate::report::svg::scale::Scale;
 use std::fmt::Write as _;
 
-/// Widths in user units: one letter of a label, plot, numbers.
-const LETTER: f64 = 7.2;
-const PLOT: f64 = 340.0;
-const NUMBERS: f64 = 300.0;
-const ROW: f64 = 24.0;
-const AXIS: f64 = 26.0;
-
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mark {
@@ -21,11 +16,11 @@ pub(super) struct Mark {
     pub(super) value: Interval,
     /// How it looks.
     pub(super) tone: Paint,
-    /// The numbers in words, at the right.
+    /// The numbers in words.
     pub(super) said: String,
 }
 
-/// The chart; empty without rows. What lies beyond the horizon is drawn at the end of the axis.
+/// The chart; empty without rows. A value beyond the horizon is drawn at the end of the axis.
 pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, horizon: Option<f64>) -> String {
     if marks.is_empty() {
         return String::new();
@@ -36,58 +31,41 @@ pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, hori
         .chain(threshold)
         .chain(horizon);
     let axis = if unit.is_empty() { Scale::probabilities(numbers) } else { Scale::linear(numbers) };
-    let letters = marks.iter().map(|m| m.label.chars().count()).max().unwrap_or(0);
-    let labels = (20.0 + LETTER * letters as f64).max(30.0);
-    let x = |value: f64| labels + PLOT * axis.share(value);
-    let bottom = ROW * marks.len() as f64 + 4.0;
-    let (width, height) = (labels + PLOT + NUMBERS, bottom + AXIS);
-    let mut svg = format!("<svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" role=\"img\">\n");
+    // Dots and words at the ends of the axis have room.
+    let x = |value: f64| 3.0 + 94.0 * axis.share(value);
+    let mut below = String::new();
+    let mut ticks = String::new();
     for &tick in axis.ticks() {
         let at = x(tick);
-        let _ = writeln!(
-            svg,
-            "<line class=\"grid\" x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"4\" y2=\"{bottom:.1}\"/>\
-             <text class=\"tick\" x=\"{at:.1}\" y=\"{:.1}\">{}</text>",
-            bottom + 16.0,
-            plain(tick)
-        );
+        let _ = write!(below, "<line class=\"grid\" x1=\"{at:.2}%\" x2=\"{at:.2}%\" y1=\"0\" y2=\"100%\"/>");
+        let _ = write!(ticks, "<text class=\"tick\" x=\"{at:.2}%\" y=\"12\">{}</text>", plain(tick));
     }
     if let Some(threshold) = threshold {
         let at = x(threshold);
-        let _ = writeln!(
-            svg,
-            "<line class=\"threshold\" x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"0\" y2=\"{bottom:.1}\"><title>threshold {}</title></line>",
+        let _ = write!(
+            below,
+            "<line class=\"threshold\" x1=\"{at:.2}%\" x2=\"{at:.2}%\" y1=\"0\" y2=\"100%\"><title>threshold {}</title></line>",
             plain(threshold)
         );
     }
-    for (k, mark) in marks.iter().enumerate() {
-        row(&mut svg, mark, ROW * (k as f64 + 0.5) + 4.0, labels, &x);
+    let mut rows = String::from("<div class=\"intervals\">\n");
+    for mark in marks {
+        let class = mark.tone.class();
+        let (low, high) = (x(mark.value.low), x(mark.value.high));
+        let _ = write!(
+            rows,
+            "<span class=\"name\">{}</span><svg height=\"24\" role=\"img\">{below}\
+             <line class=\"whisker {class}\" x1=\"{low:.2}%\" x2=\"{high:.2}%\" y1=\"12\" y2=\"12\"/>",
+            escape(&mark.label)
+        );
+        if !mark.value.estimate.is_nan() {
+            let at = x(mark.value.estimate);
+            let _ = write!(rows, "<circle class=\"dot {class}\" cx=\"{at:.2}%\" cy=\"12\" r=\"3.5\"/>");
+        }
+        let _ = writeln!(rows, "</svg><span class=\"said\">{}</span>", escape(&mark.said));
     }
-    svg.push_str("</svg>\n");
-    svg
-}
-
-fn row(svg: &mut String, mark: &Mark, y: f64, labels: f64, x: &impl Fn(f64) -> f64) {
-    let class = mark.tone.class();
-    let text = y + 4.0;
-    let (low, high) = (x(mark.value.low), x(mark.value.high));
-    let _ = writeln!(
-        svg,
-        "<text class=\"label\" x=\"{:.1}\" y=\"{text:.1}\">{}</text>\
-         <line class=\"whisker {class}\" x1=\"{low:.1}\" x2=\"{high:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>",
-        labels - 10.0,
-        escape(&mark.label)
-    );
-    if !mark.value.estimate.is_nan() {
-        let at = x(mark.value.estimate);
-        let _ = writeln!(svg, "<circle class=\"dot {class}\" cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"3.5\"/>");
-    }
-    let _ = writeln!(
-        svg,
-        "<text class=\"said\" x=\"{:.1}\" y=\"{text:.1}\">{}</text>",
-        labels + PLOT + 14.0,
-        escape(&mark.said)
-    );
+    let _ = writeln!(rows, "<span></span><svg height=\"18\" role=\"img\">{ticks}</svg><span></span>\n</div>");
+    rows
 }
 
 #[cfg(test)]

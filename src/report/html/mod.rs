@@ -98,6 +98,14 @@ pub fn page(page: Page<'_>) -> String {
             table.note += &format!(" Left out: {}.", counted(more, "row"));
             table.rows.truncate(MOST_ROWS);
         }
+        // A column without a word takes room only.
+        for k in (0..table.columns.len()).rev() {
+            if !table.rows.is_empty() && table.rows.iter().all(|row| row.get(k).is_none_or(String::is_empty))
+            {
+                table.columns.remove(k);
+                table.rows.iter_mut().for_each(|row| drop((k < row.len()).then(|| row.remove(k))));
+            }
+        }
     }
     let is_shown = |source: &&Source| !source.text.is_empty() && !source.name.starts_with("--");
     let sources: Vec<&Source> = sources.iter().filter(is_shown).collect();

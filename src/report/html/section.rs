@@ -2,6 +2,7 @@
 
 use super::chart;
 use super::chart::Mark;
+use crate::engine::at_most;
 use crate::engine::outcome::{
     Histogram, Interval, QueryResult, RankedOption, Shortfall, Side, Verdict, Witness,
 };
@@ -24,6 +25,9 @@ pub(super) struct Section {
     pub(super) class: String,
     pub(super) query: String,
     pub(super) place: String,
+    /// The answer in the table of all queries, and how sure it is.
+    pub(super) answer: String,
+    pub(super) sure: String,
     /// The intervals as SVG; may be empty.
     pub(super) chart: String,
     /// Kind and level of the intervals; empty where they differ.
@@ -38,7 +42,7 @@ pub(super) struct Section {
 pub(super) struct Recommended {
     pub(super) before: &'static str,
     pub(super) option: String,
-    pub(super) after: &'static str,
+    pub(super) after: String,
 }
 
 /// What is said of one result under the chart.
@@ -46,8 +50,6 @@ pub(super) struct Recommended {
 pub(super) struct Facts {
     /// The settings where there are several; else empty.
     pub(super) head: String,
-    /// The estimate and its interval.
-    pub(super) figures: String,
     /// The figures under each value of `under every`.
     pub(super) every: Vec<String>,
     pub(super) certified: String,
@@ -81,7 +83,7 @@ pub(super) fn section(
 ) -> Section {
     let Some((_, first)) = group.first() else { return Section::default() };
     let words = group.iter().map(|(_, result)| word(result));
-    let word = words.max_by_key(|word| severity(word)).unwrap_or("computed");
+    let word = words.max_by_key(|word| severity(word)).unwrap_or("estimated");
     let place = match &first.asked {
         asked if asked.file.is_empty() => String::new(),
         asked => format!("{}:{}", asked.file, asked.line),
@@ -103,11 +105,33 @@ pub(super) fn section(
         class: word.replace(' ', "-"),
         query: one_line(&first.asked.text),
         place,
+        answer: if swept { counted(group.len() as u64, "setting") } else { answer(first) },
+        sure: if swept { String::new() } else { sure(first) },
         chart: chart::intervals(&marks, &first.unit, threshold, first.censored),
         intervals: if is_one { first.interval.clone() } else { String::new() },
         choice: recommended(first),
         results: group.iter().map(|(k, result)| facts(*k, result, swept, played)).collect(),
         ..Section::default()
+    }
+}
+
+/// The answer in a few words: the choice, or the number with its interval.
+fn answer(result: &QueryResult) -> String {
+    if let Some(ranking) = &result.rank {
+        return ranking.choice.as_ref().map_or("no choice".to_owned(), |choice| format!("choose {choice}"));
+    }
+    result.value().map_or(String::new(), |value| {
+        let (estimate, interval) = text::printed(result, &value);
+        format!("{estimate} {interval}")
+    })
+}
+
+/// How sure the answer is.
+fn sure(result: &QueryResult) -> String {
+    match &result.certificate {
+        Some(certificate) => format!("certified, error at most {}", plain(at_most(certificate.error))),
+        None if result.value().is_some() => result.interval.clone(),
+        None => "nothing is certified".to_owned(),
     }
 }
 
@@ -117,15 +141,15 @@ fn recommended(result: &QueryResult) -> Option<Recommended> {
     Some(match &ranking.choice {
         None if result.consumed.counts.trials > 0 => plain("No choice: no trial is resolved."),
         None => plain("No choice: nothing was sampled."),
-        Some(choice) if !result.certifies.is_empty() => Recommended {
-            before: "Choose ",
-            option: choice.clone(),
-            after: if ranking.tied { "; options marked tied have the same certificate." } else { "." },
-        },
+        Some(choice) if !result.certifies.is_empty() => {
+            let means = ranking.means.as_ref().map_or(String::new(), |means| format!(": {means}"));
+            let tied = if ranking.tied { "; options marked tied have the same certificate" } else { "" };
+            Recommended { before: "Choose ", option: choice.clone(), after: format!("{means}{tied}.") }
+        }
         Some(choice) => Recommended {
             before: "",
             option: choice.clone(),
-            after: " is best so far, but nothing is certified.",
+            after: " is best so far, but nothing is certified.".to_owned(),
         },
     })
 }
@@ -140,8 +164,8 @@ fn severity(word: &str) -> u8 {
 }
 
 fn word(result: &QueryResult) -> &'static str {
-    let computed = result.shortfall().map_or("computed", Shortfall::name);
-    result.verdict.map_or(computed, Verdict::name)
+    let estimated = result.shortfall().map_or("estimated", Shortfall::name);
+    result.verdict.map_or(estimated, Verdict::name)
 }
 
 fn facts(
@@ -153,23 +177,17 @@ fn facts(
     let histogram = result.distribution.as_ref().and_then(|d| d.histogram.as_ref());
     let histogram = histogram.map(|bins| bars(bins, &result.unit, endless(result)));
     let witness = |witness: &Witness| {
-        let Witness { shows, value, trial, time, unit, what, command, .. } = witness;
+        let Witness { shows, trial, time, unit, what, command, .. } = witness;
         let moment = format!(
-            "{} in trial {}, {} {}",
+            "{} in trial {} at {}",
             text::shown(*shows, result.of.is_some()),
             count(*trial),
-            if value.is_some() { "at" } else { "decided at" },
             text::moment(*time, unit)
         );
         Shown { moment, what: what.clone(), command: command.clone(), played: played(place, witness) }
     };
-    let figures = result.value().map_or(String::new(), |value| {
-        let (estimate, interval) = text::printed(result, &value);
-        format!("estimate {estimate}, interval {interval}")
-    });
     Facts {
         head: if swept { settings(result) } else { String::new() },
-        figures,
         every: text::under_each(result),
         certified: certified(result),
         model: result.model.as_ref().map(phrase::model),
@@ -215,7 +233,7 @@ fn labelled(result: &QueryResult, label: &str, value: Interval, tone: Paint, not
 
 // A histogram in SVG.
 
-const WIDTH: f64 = 520.0;
+const WIDTH: f64 = 330.0;
 const HEIGHT: f64 = 120.0;
 const MARGIN: f64 = 10.0;
 

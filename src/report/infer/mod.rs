@@ -8,7 +8,7 @@ use crate::perception::{Birth, Death, Group, Inference, InferredTrace, Inferring
 use crate::report::number::thousandths;
 use crate::report::svg::picture::Picture;
 use crate::report::svg::{Drawing, Ink};
-pub use page::{to_page, to_text};
+pub use page::{to_page, to_text, traces};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

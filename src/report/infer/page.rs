@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 /// The page. The player has the walls and regions of a scene.
 pub fn to_page<'a>(report: &InferredFile, scene: Scene, sources: &'a [Source]) -> Page<'a> {
     let found = report.inference;
-    let trace = recorded(report.file, scene, &walks(found));
+    let trace = recorded(report.file, scene, &traces(found));
     Page {
         run: CallResult::of(format!("Traces and groups of {}", report.file), report.options.key.seed),
         sources,
@@ -39,7 +39,7 @@ pub fn to_text(report: &InferredFile) -> String {
 }
 
 /// The traces, each with the groups of several members that it was in.
-fn walks(found: &Inference) -> Vec<Walk> {
+pub fn traces(found: &Inference) -> Vec<Walk> {
     let mut walks: BTreeMap<u64, Walk> = BTreeMap::new();
     for one in &found.traces {
         let points = one.trace.points.iter().map(|point| (point.time, point.position)).collect();

@@ -32,6 +32,10 @@ impl Ink {
     pub const START: Self = Self(r##"fill="#bfe0f5" stroke="#5b93b5" stroke-dasharray="2 2""##);
     /// A way: of medium brightness.
     pub const WAY: Self = Self(r##"fill="none" stroke="#c2410c" stroke-width="2" stroke-linejoin="round""##);
+    /// A named route: violet and dashed.
+    pub const ROUTE: Self = Self(
+        r##"fill="none" stroke="#7a5195" stroke-width="2" stroke-dasharray="6 4" stroke-linejoin="round""##,
+    );
     /// A joint of a path: small and dark.
     pub const JOINT: Self = Self(r##"fill="#ffffff" stroke="#37474f" stroke-width="1.5""##);
     /// Edges of a roadmap: thin and light.

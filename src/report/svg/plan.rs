@@ -3,27 +3,43 @@
 use super::picture::Picture;
 use super::{Drawing, Ink};
 use crate::base::geometry::{Bounds, Vec2};
-use crate::model::{Agent, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario};
+use crate::model::{Agent, Goal, Leg, Move, Obstacle, Parameter, Position, Route, Scenario, Scene};
 use crate::report::number::plain;
 use crate::route::{Atlas, Bend};
 
 /// Points of a drawn arc are at most so far apart, rad.
 const STEP: f64 = 0.1;
 
-/// The middle of a start; none of a start near somebody.
-fn start(agent: &Agent) -> Option<Vec2> {
-    match &agent.start.position {
-        Position::Point(point) => Some(*point),
-        Position::Within(shape) => Some(shape.inner_point()),
-        Position::Near { .. } => None,
-    }
+/// Points on each side of a start among which one beside the barriers is sought.
+const TRIED: u32 = 12;
+
+/// The middle of a start, or the place next to it at which a body of this radius, m, touches no barrier; none of a start near
+/// somebody.
+fn start(scene: &Scene, agent: &Agent, radius: f64) -> Option<Vec2> {
+    let shape = match &agent.start.position {
+        Position::Point(point) => return Some(*point),
+        Position::Within(shape) => shape,
+        Position::Near { .. } => return None,
+    };
+    let is_free = |p: &Vec2| {
+        scene.walls().all(|wall| wall.distance(*p) >= radius)
+            && scene.solids().all(|solid| solid.distance(*p) >= radius)
+    };
+    let (middle, bounds) = (shape.inner_point(), shape.bounds());
+    let place = |k: u32| (f64::from(k) + 0.5) / f64::from(TRIED);
+    let tried = (0..TRIED * TRIED).map(|k| {
+        let share = Vec2::new(place(k % TRIED), place(k / TRIED));
+        bounds.low + (bounds.high - bounds.low).component_mul(&share)
+    });
+    let free = std::iter::once(middle).chain(tried).filter(|p| shape.contains(*p)).filter(is_free);
+    free.min_by(|a, b| (a - middle).norm().total_cmp(&(b - middle).norm())).or(Some(middle))
 }
 
-/// The way of an agent from the middle of its start through all goals: its points and its length, m.
-fn way(atlas: &Atlas, agent: &Agent) -> Option<(Vec<Vec2>, f64)> {
-    let Route::Legs { legs, .. } = &agent.route else { return None };
+/// The way of an agent from the middle of its start through all goals of a route: its points and its length, m.
+fn way(atlas: &Atlas, agent: &Agent, route: &Route) -> Option<(Vec<Vec2>, f64)> {
+    let Route::Legs { legs, .. } = route else { return None };
     let radius = agent.body[Parameter::Radius].draw(0.5);
-    let mut points = vec![start(agent)?];
+    let mut points = vec![start(atlas.scene(), agent, radius)?];
     let mut length = 0.0;
     for leg in legs {
         let Leg::To(goal) = leg else { continue };
@@ -107,8 +123,15 @@ pub fn scene(scenario: &Scenario) -> Drawing {
 pub fn draw(scenario: &Scenario) -> Picture {
     let atlas = Atlas::new(scenario.scene.clone());
     let shown = shown(scenario);
-    let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
-    let mut drawing = drawn(scenario, ways.iter().flat_map(|(points, _)| points.iter().copied()));
+    let ways = shown.iter().filter_map(|agent| way(&atlas, agent, &agent.route));
+    let ways: Vec<(Vec<Vec2>, f64)> = ways.collect();
+    let named = routes(&atlas, scenario);
+    let all = ways.iter().map(|(points, _)| points).chain(named.iter().map(|(_, points)| points));
+    let mut drawing = drawn(scenario, all.flatten().copied());
+    for (name, points) in &named {
+        drawing.line(points, Ink::ROUTE);
+        drawing.text(middle(points), name);
+    }
     for (points, length) in &ways {
         drawing.line(points, Ink::WAY);
         drawing.text(middle(points), &format!("{} m", plain((length * 10.0).round() / 10.0)));
@@ -117,7 +140,27 @@ pub fn draw(scenario: &Scenario) -> Picture {
     if !ways.is_empty() {
         drawing.name(Ink::WAY, "shortest ways");
     }
+    if !named.is_empty() {
+        drawing.name(Ink::ROUTE, "named routes");
+    }
     Picture::plan(if scenario.title.is_empty() { "plan" } else { &scenario.title }, drawing)
+}
+
+/// The named routes among the moves of agents, with their ways.
+fn routes(atlas: &Atlas, scenario: &Scenario) -> Vec<(String, Vec<Vec2>)> {
+    let mut named = Vec::new();
+    for moves in &scenario.moves {
+        let Some(agent) = scenario.agents.get(moves.agent.0 as usize) else { continue };
+        for (label, option) in &moves.options {
+            if let Move::Route(number) = option
+                && let Some((points, _)) =
+                    moves.routes.get(*number).and_then(|route| way(atlas, agent, route))
+            {
+                named.push((label.trim_start_matches("route ").to_owned(), points));
+            }
+        }
+    }
+    named
 }
 
 /// Names of regions, lines and points.

@@ -15,7 +15,7 @@ use crate::report::phrase::{self, certified, endless, one_line, settings};
 use std::fmt::Write as _;
 
 /// Writes the block of one result.
-pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
+pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette, is_verbose: bool) {
     head(text, result, palette);
     let with = settings(result);
     if !with.is_empty() {
@@ -44,7 +44,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     if let Some(rare) = &result.rare {
         self::rare(text, rare);
     }
-    method(text, result, palette);
+    if is_verbose {
+        method(text, result, palette);
+    }
     if let Some(found) = &result.distribution {
         write_distribution(text, result, found, palette);
     }
@@ -248,20 +250,18 @@ pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: P
         Shows::Lowest | Shows::Highest => Paint::Neutral,
     };
     let (word, paint) = (shown(*shows, of), if of { Paint::Neutral } else { paint });
-    let decided = if witness.value.is_some() { "at" } else { "decided at" };
     let said = if what.is_empty() { String::new() } else { format!(": {what}") };
+    let command = if command.is_empty() { String::new() } else { format!("  ({command})") };
+    let command = palette.paint(Paint::Faint, &command);
     line(
         text,
         &format!(
-            "{} in trial {}, {decided} {}{said}",
+            "{} in trial {} at {}{said}{command}",
             palette.paint(paint, word),
             count(*trial),
             moment(*time, unit)
         ),
     );
-    if !command.is_empty() {
-        line(text, &palette.paint(Paint::Faint, &format!("  {command}")));
-    }
 }
 
 // The block of a comparison: both sides and the difference.
@@ -320,7 +320,8 @@ fn write_ranking(text: &mut String, result: &QueryResult, ranking: &Ranking, pal
     let mut said = if result.certifies.is_empty() {
         format!("{choice} is best so far, but nothing is certified")
     } else {
-        format!("choose {choice}")
+        let means = ranking.means.as_ref().map_or(String::new(), |means| format!(": {means}"));
+        format!("choose {choice}{means}")
     };
     if ranking.tied {
         said += "; options marked tied have the same certificate";

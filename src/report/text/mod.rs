@@ -13,10 +13,10 @@ pub(super) use block::{counts, moment, shown, trials, word};
 use columns::Cell;
 pub(super) use every::lines as under_each;
 pub(super) use rows::printed;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
-/// The report of a run, ending with its replay line.
-pub fn render(run: &CallResult, palette: Palette) -> String {
+/// The report of a run, ending with its replay line; if verbose, with the procedure of each query and its numbers.
+pub fn render(run: &CallResult, palette: Palette, is_verbose: bool) -> String {
     let mut text = String::new();
     if !run.scenario.is_empty() {
         let _ = writeln!(text, "{}", palette.paint(Paint::Strong, &run.scenario));
@@ -30,8 +30,8 @@ pub fn render(run: &CallResult, palette: Palette) -> String {
     }
     for group in by_query(&run.results).chunk_by(|a, b| same_sweep(a, b)) {
         match group {
-            [one] => block::write(&mut text, one, palette),
-            many => write_sweep(&mut text, many, palette),
+            [one] => block::write(&mut text, one, palette, is_verbose),
+            many => write_sweep(&mut text, many, palette, is_verbose),
         }
         text.push('\n');
     }
@@ -61,8 +61,22 @@ pub fn render(run: &CallResult, palette: Palette) -> String {
 /// The block of one result alone.
 pub fn block(result: &QueryResult, palette: Palette) -> String {
     let mut text = String::new();
-    block::write(&mut text, result, palette);
+    block::write(&mut text, result, palette, true);
     text
+}
+
+impl fmt::Display for QueryResult {
+    /// As in the report of `smc check`, the lines of this result.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(block(self, Palette::PLAIN).trim_end())
+    }
+}
+
+impl fmt::Display for CallResult {
+    /// The report of `smc check`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(render(self, Palette::PLAIN, false).trim_end())
+    }
 }
 
 /// Whether two successive results are of one query under different settings.
@@ -82,20 +96,20 @@ pub(super) fn by_query(results: &[QueryResult]) -> Vec<&QueryResult> {
     ordered
 }
 
-/// How many queries there are of each verdict, and of those without one how many are computed, fall short, and have no trial;
+/// How many queries there are of each verdict, and of those without one how many are estimated, fall short, and have no trial;
 /// each with its word.
 pub(super) fn tally(run: &CallResult) -> Vec<(u64, &'static str, Paint)> {
     let number = |verdict| run.results.iter().filter(|r| r.verdict == Some(verdict)).count() as u64;
-    let computed = |shortfall| {
+    let estimated = |shortfall| {
         run.results.iter().filter(|r| r.verdict.is_none() && r.shortfall() == shortfall).count() as u64
     };
     let all = [
         (number(Verdict::Satisfied), "satisfied", Paint::Good),
         (number(Verdict::Violated), "violated", Paint::Bad),
         (number(Verdict::Undecided), "undecided", Paint::Caution),
-        (computed(None), "computed", Paint::Neutral),
-        (computed(Some(Shortfall::Incomplete)), Shortfall::Incomplete.name(), Paint::Caution),
-        (computed(Some(Shortfall::NotBegun)), Shortfall::NotBegun.name(), Paint::Caution),
+        (estimated(None), "estimated", Paint::Neutral),
+        (estimated(Some(Shortfall::Incomplete)), Shortfall::Incomplete.name(), Paint::Caution),
+        (estimated(Some(Shortfall::NotBegun)), Shortfall::NotBegun.name(), Paint::Caution),
     ];
     all.into_iter().filter(|(n, ..)| *n > 0).collect()
 }
@@ -117,7 +131,7 @@ fn summary(run: &CallResult, palette: Palette) -> String {
 // The block of a query swept over values of parameters: one row per setting.
 
 /// Writes all results of one query.
-fn write_sweep(text: &mut String, results: &[&QueryResult], palette: Palette) {
+fn write_sweep(text: &mut String, results: &[&QueryResult], palette: Palette, is_verbose: bool) {
     let worst = |r: &&&QueryResult| match r.verdict {
         Some(Verdict::Violated) => 3,
         Some(Verdict::Undecided) => 2,
@@ -135,7 +149,9 @@ fn write_sweep(text: &mut String, results: &[&QueryResult], palette: Palette) {
     if results.iter().all(|r| r.interval == first.interval) {
         rows::intervals(text, first, palette);
     }
-    block::method(text, &common(first, results), palette);
+    if is_verbose {
+        block::method(text, &common(first, results), palette);
+    }
     let statement = certified(first);
     if results.iter().all(|r| certified(r) == statement) {
         if !statement.is_empty() {

@@ -74,7 +74,13 @@ const FORMS: &[Row] = &[
     (Properties, QUERY, "maximize P ( $e1 ) over $w in $e2 .. $l", "rank $w in $e2 .. $l by 1 by P($e1)"),
     (Properties, QUERY, "Q ( $e1 , $e2 )", "estimate Q($e1, $e2)"),
     (Properties, QUERY, "E ( $e )", "estimate E($e)"),
+    (Properties, "a ranking needs `P(…)`, `E(…)` or `Q(…)`, found `{}`", "rank moves of $w1 by @ $w2", "rank moves of $w1 by P($w2)"),
     // Formulas.
+    (Properties, "expected `=`, found `{}`", "property $w @ : $l", "property $w = $l"),
+    (Both, "expected a name and `in`, found `{}`", "forall @ $w ( $e ) :", "forall a in $w($e):"),
+    (Both, "expected a name and `in`, found `{}`", "exists @ $w ( $e ) :", "exists a in $w($e):"),
+    (Both, "expected a name and `in`, found `{}`", "forall @ $w :", "forall a in $w:"),
+    (Both, "expected a name and `in`, found `{}`", "exists @ $w :", "exists a in $w:"),
     (Properties, MOMENT, "at end $r", " for a condition write `F[T, T] (…)` with the horizon for T"),
     (Properties, MOMENT, "at $t $r", " for a condition write `F[$t, $t] (…)`"),
     (Properties, "UPPAAL", "= $e1 @ -- > $e2", "= G ($e1 => F ($e2))"),
@@ -148,6 +154,9 @@ const FORMS: &[Row] = &[
     (Scenario, "a parameter has no type, found `{}`", "param $w @ : $y = $e", "param $w = $e"),
     (Scenario, "expected `..` and the opposite corner, found `{}`", "rect ( $e1 , $e2 ) @ size ( $e3 , $e4 )", "rect ($e1, $e2) .. ($e1 + $e3, $e2 + $e4)"),
     (Scenario, "expected `in`, found `{}`", "uniform @ $w", "uniform in $w"),
+    (Scenario, "expected `--` between points, found `{}`", "( $e1 , $e2 ) @ , ( $e3 , $e4 )", "($e1, $e2) -- ($e3, $e4)"),
+    (Scenario, "expected `--` between points, found `{}`", "( $e1 , $e2 ) @ -> ( $e3 , $e4 )", "($e1, $e2) -- ($e3, $e4)"),
+    (Scenario, "moves need a time, found `{}`", "moves $w @ { $e }", "moves $w for 2 s { … }"),
     (Scenario, "expected a quoted text, found `{}`", "import @ $w", "import \"$w\""),
 ];
 

@@ -4,16 +4,20 @@
 //! Seven shades from the map `viridis` stand for values. Their brightness goes one way, so that they can be told apart in
 //! grey and by those who do not see some colours; the brightest is nearest to the paper.
 
-use super::Figure;
+use super::exits::leavers;
 use super::moments::{Moment, place};
-use super::plan::Plan;
+use super::plan::{Figure, Plan};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::engine::traces::{Motion, Trace};
 use crate::report::number::{brief, exponent, plain, power};
 use std::fmt::Write as _;
 
 /// Cells of a grid.
-const MOST_CELLS: f64 = 1600.0;
+const MOST_CELLS: f64 = 9000.0;
+/// Cells of the map of places of start: each needs several people.
+const MOST_STARTS: f64 = 400.0;
+/// Cells of a map that name their value.
+const MOST_NAMED: usize = 1600;
 /// Sides of cells, m; ten times as long after the last.
 const SIDES: [f64; 3] = [0.2, 0.5, 1.0];
 /// Shades of a map.
@@ -30,6 +34,9 @@ struct Cell {
     /// Sum of densities around agents in it, and their number.
     density: f64,
     agents: f64,
+    /// Sum of the times that it took from there to leave, s, and the number of those who left.
+    leaving: f64,
+    leavers: f64,
 }
 
 /// Square cells.
@@ -42,17 +49,17 @@ struct Grid {
 }
 
 impl Grid {
-    /// The finest grid over some bounds.
-    fn over(bounds: &Bounds) -> Self {
+    /// The finest grid of at most so many cells over some bounds.
+    fn over(bounds: &Bounds, most: f64) -> Self {
         let powers = std::iter::successors(Some(1.0), |power| Some(10.0 * power)).take(9);
         let sides = powers.flat_map(|power: f64| SIDES.map(|side| side * power));
         let size = |side: f64| {
             let cells = |low: f64, high: f64| (high / side).floor() - (low / side).floor() + 1.0;
             [cells(bounds.low.x, bounds.high.x), cells(bounds.low.y, bounds.high.y)]
         };
-        let fits = |side: &f64| size(*side).iter().product::<f64>() <= MOST_CELLS;
+        let fits = |side: &f64| size(*side).iter().product::<f64>() <= most;
         let side = sides.clone().find(fits).unwrap_or(f64::INFINITY);
-        let [columns, rows] = size(side).map(|count| count.clamp(1.0, MOST_CELLS) as usize);
+        let [columns, rows] = size(side).map(|count| count.clamp(1.0, most) as usize);
         let low = bounds.low.map(|part| (part / side).floor() * side);
         Self { low, side, columns, cells: vec![Cell::default(); columns * rows] }
     }
@@ -93,7 +100,7 @@ impl Grid {
 
 /// The maps of some traces of one scene; none of contact where nobody touches, and of recordings, which have no bodies.
 pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec<Figure> {
-    let mut grid = Grid::over(plan.walked());
+    let mut grid = Grid::over(plan.walked(), MOST_CELLS);
     for trace in traces {
         grid.add(&trace.motion);
     }
@@ -133,7 +140,25 @@ pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec
             &|cell| if cell.seconds > 0.0 { cell.touching / cell.seconds } else { 0.0 },
         ),
     ];
-    maps.into_iter().flatten().collect()
+    maps.into_iter().flatten().chain(time_to_leave(plan, traces)).collect()
+}
+
+/// The map of the time that it took to leave, by place of start; none where nobody leaves.
+fn time_to_leave(plan: &Plan, traces: &[&Trace]) -> Option<Figure> {
+    let mut grid = Grid::over(plan.walked(), MOST_STARTS);
+    for leaver in traces.iter().flat_map(|trace| leavers(trace)) {
+        if let Some(cell) = grid.at(leaver.from) {
+            cell.leaving += leaver.took;
+            cell.leavers += 1.0;
+        }
+    }
+    let mean = |cell: &Cell| if cell.leavers > 0.0 { cell.leaving / cell.leavers } else { 0.0 };
+    let svg = drawn(plan, &grid, ("Time to leave", "s"), &mean)?;
+    let caption = format!(
+        "Time to leave: the mean time of those who started in a cell and left. Cells of {} m.",
+        plain(grid.side)
+    );
+    Some(Figure { caption, svg, is_wide: plan.is_wide() })
 }
 
 /// A round width of a shade, such that all shades reach a number.
@@ -155,16 +180,28 @@ fn drawn(
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
     let most = *sorted.last()?;
+    let is_named = sorted.len() <= MOST_NAMED;
     let typical = sorted[((sorted.len() - 1) as f64 * TYPICAL) as usize];
     let width = width(typical);
     let mut cells = String::new();
-    for (k, value) in values.iter().enumerate().filter(|(_, value)| **value > 0.0) {
-        let (column, row) = (k % grid.columns, k / grid.columns);
-        let shade = ((value / width * (1.0 - 1e-9)) as usize).min(SHADES - 1) + 1;
+    let shade = |value: f64| match value {
+        value if value > 0.0 => ((value / width * (1.0 - 1e-9)) as usize).min(SHADES - 1) + 1,
+        _ => 0,
+    };
+    // Cells of one shade in a row are one rectangle where there is no room for their values.
+    let runs = values.chunks(grid.columns).enumerate().flat_map(|(row, values)| {
+        let runs = values.chunk_by(|a, b| !is_named && shade(*a) == shade(*b));
+        runs.scan(0, move |column, run| {
+            *column += run.len();
+            Some((row, *column - run.len(), run))
+        })
+    });
+    for (row, column, run) in runs.filter(|(.., run)| run[0] > 0.0) {
+        let (value, shade, wide) = (&run[0], shade(run[0]), run.len());
+        let title = if is_named { format!("<title>{}</title>", brief(*value)) } else { String::new() };
         let _ = writeln!(
             cells,
-            "<rect class=\"h{shade}\" x=\"{column}\" y=\"{row}\" width=\"1\" height=\"1\"><title>{}</title></rect>",
-            brief(*value)
+            "<rect class=\"h{shade}\" x=\"{column}\" y=\"{row}\" width=\"{wide}\" height=\"1\">{title}</rect>"
         );
     }
     let mut legend = String::new();

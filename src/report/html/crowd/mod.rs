@@ -1,6 +1,7 @@
-//! What a page shows of crowds, from the traces that are kept for its player: heat maps, N(t) through lines, speed against
+//! Crowds on a page, from the traces that are kept for its player: heat maps, exits, N(t) through lines, speed against
 //! density. All are drawn when the page is made.
 
+mod exits;
 mod heat;
 mod moments;
 mod passage;
@@ -18,6 +19,7 @@ use crate::report::svg::frame::Frame;
 use crate::report::svg::picture::Picture;
 use crate::report::svg::scale::Scale;
 use moments::Moment;
+pub(in crate::report::html) use plan::Figure;
 use plan::Plan;
 use std::sync::Arc;
 
@@ -34,6 +36,8 @@ pub(super) struct Crowd {
     pub(super) head: String,
     /// Which traces they are from, and what is left out.
     pub(super) note: String,
+    /// A row for each exit by which people left.
+    pub(super) exits: Vec<Vec<String>>,
     pub(super) figures: Vec<Figure>,
 }
 
@@ -97,7 +101,8 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
         note += &format!(" Left out: {}.", counted(more as u64, "line"));
     }
     let result = shown.and_then(|shown| run.results.get(shown.result));
-    Some(Crowd { head: result.map_or(String::new(), settings), note, figures })
+    let exits = if is_crowd(traces) { exits::rows(traces) } else { Vec::new() };
+    Some(Crowd { head: result.map_or(String::new(), settings), note, exits, figures })
 }
 
 // Speed against density: a dot for each second of each trace. The density is that of the area that people occupy: their
@@ -137,16 +142,4 @@ fn speed_density(moments: &[Moment]) -> Option<Figure> {
         svg: Picture::charts("Speed against density", vec![frame]).part_of_page(),
         is_wide: true,
     })
-}
-
-// A figure: a drawing with its caption.
-
-/// A drawing and what it shows.
-#[derive(Clone, Debug)]
-pub(in crate::report::html) struct Figure {
-    pub(in crate::report::html) caption: String,
-    /// SVG, in which all texts are escaped.
-    pub(in crate::report::html) svg: String,
-    /// Whether it takes all the width of a page.
-    pub(in crate::report::html) is_wide: bool,
 }

@@ -1,8 +1,8 @@
 //! Who crossed a line, over time: N(t), its mean and range over the traces, and the flow. A line is crossed as the
 //! language's `crossings(L)` counts it, each person once; the ways between the states of a trace are straight.
 
-use super::Figure;
 use super::moments::place;
+use super::plan::Figure;
 use crate::engine::traces::{Motion, Trace};
 use crate::kernel::is_crossed;
 use crate::model::Line;
@@ -32,13 +32,13 @@ fn crossings(line: &Line, motion: &Motion) -> Vec<f64> {
 }
 
 /// Crossings in each second between the first and the last one; none of fewer than two, or all at once.
-fn flow(times: &[f64]) -> Option<f64> {
+pub(super) fn flow(times: &[f64]) -> Option<f64> {
     let (first, last) = (times.first()?, times.last()?);
     (last > first).then(|| (times.len() - 1) as f64 / (last - first))
 }
 
 /// `3.2 (1 to 5)`: mean and range.
-fn spread(numbers: &[f64], unit: &str) -> String {
+pub(super) fn spread(numbers: &[f64], unit: &str) -> String {
     let mean = numbers.iter().sum::<f64>() / numbers.len() as f64;
     let [low, high] = range(numbers);
     let range = if low < high { format!(" ({} to {})", brief(low), brief(high)) } else { String::new() };

@@ -8,11 +8,11 @@ use std::fmt::Write as _;
 
 /// Width of a drawing: three beside each other, or one alone; its greatest height, and the room of the legend below.
 const WIDTH: f64 = 300.0;
-const WIDE: f64 = 800.0;
-const MOST_HEIGHT: f64 = 420.0;
+const WIDE: f64 = 900.0;
+const MOST_HEIGHT: f64 = 620.0;
 const LEGEND: f64 = 70.0;
-/// A plan so many times as wide as high has all the width.
-const LONG: f64 = 2.5;
+/// A plan that is longer than this has all the width, m.
+const LARGE: f64 = 12.0;
 
 /// A scene and where people were in it.
 #[derive(Debug)]
@@ -42,7 +42,7 @@ impl Plan {
         let room = Vec2::repeat((0.03 * size.x.max(size.y)).max(0.2));
         let bounds = Bounds { low: inner.low - room, high: inner.high + room };
         let size = bounds.high - bounds.low;
-        let width = if size.x > LONG * size.y { WIDE } else { WIDTH };
+        let width = if size.x > LARGE { WIDE } else { WIDTH };
         let scale = (width / size.x).min(MOST_HEIGHT / size.y);
         let mut plan = Self { walked, bounds, scale, barriers: String::new() };
         plan.barriers = plan.drawn(scene);
@@ -57,7 +57,7 @@ impl Plan {
     /// Whether it takes all the width of a page.
     pub(super) fn is_wide(&self) -> bool {
         let size = self.bounds.high - self.bounds.low;
-        size.x > LONG * size.y
+        size.x > LARGE
     }
 
     /// Width of a shade in the legend.
@@ -129,4 +129,16 @@ impl Plan {
             size.y + 24.0,
         )
     }
+}
+
+// A figure: a drawing with its caption.
+
+/// A drawing and what it shows.
+#[derive(Clone, Debug)]
+pub(in crate::report::html) struct Figure {
+    pub(in crate::report::html) caption: String,
+    /// SVG, in which all texts are escaped.
+    pub(in crate::report::html) svg: String,
+    /// Whether it takes all the width of a page.
+    pub(in crate::report::html) is_wide: bool,
 }

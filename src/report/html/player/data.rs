@@ -22,6 +22,8 @@ pub(super) struct Data<'t> {
 struct Motion<'t> {
     scene: usize,
     trial: u64,
+    /// The option of moves that is followed.
+    option: Option<&'t str>,
     spacing: f64,
     frames: usize,
     end: f64,
@@ -82,6 +84,7 @@ fn motion(scene: usize, trace: &Trace) -> Motion<'_> {
     Motion {
         scene,
         trial: trace.trial,
+        option: trace.option.as_deref(),
         spacing: motion.spacing,
         frames: motion.frames,
         end: trace.end,

@@ -2,7 +2,7 @@
 
 use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::base::tick::Clock;
-use crate::model::Scenario;
+use crate::model::{self, Goal, Leg, Move, Moves, Route, Scenario};
 use serde::Serialize;
 
 /// A scene and what the names of its agents are grouped by.
@@ -15,6 +15,7 @@ pub(super) struct Scene {
     regions: Vec<Named>,
     points: Vec<Point>,
     groups: Vec<Group>,
+    options: Vec<Options>,
     /// Number of agents.
     agents: usize,
 }
@@ -45,6 +46,64 @@ struct Point {
 struct Group {
     name: String,
     members: Vec<u32>,
+}
+
+/// The moves of an agent that a ranking compares.
+#[derive(Debug, Serialize)]
+struct Options {
+    agent: u32,
+    /// How long a heading holds, s.
+    seconds: f64,
+    routes: Vec<NamedRoute>,
+    headings: Vec<Heading>,
+}
+
+#[derive(Debug, Serialize)]
+struct NamedRoute {
+    label: String,
+    /// Of each goal x and y in turn.
+    points: Vec<i64>,
+}
+
+/// A direction: left of that to a goal by an angle, rad.
+#[derive(Debug, Serialize)]
+struct Heading {
+    label: String,
+    toward: [i64; 2],
+    turn: f64,
+}
+
+/// The middles of the goals of a route.
+fn goals(scene: &model::Scene, route: &Route) -> Vec<Vec2> {
+    let Route::Legs { legs, .. } = route else { return Vec::new() };
+    let goal = |leg: &Leg| match leg {
+        Leg::To(Goal::Point(point)) => Some(*point),
+        Leg::To(Goal::Region(id)) => Some(scene.regions[id.0 as usize].shape.inner_point()),
+        _ => None,
+    };
+    legs.iter().filter_map(goal).collect()
+}
+
+fn options(scenario: &Scenario, moves: &Moves) -> Options {
+    let route = |(label, option): &(String, Move)| match option {
+        Move::Route(number) => {
+            let goals = goals(&scenario.scene, moves.routes.get(*number)?);
+            Some(NamedRoute { label: label.clone(), points: goals.into_iter().flat_map(place).collect() })
+        }
+        _ => None,
+    };
+    let own = scenario.agents.get(moves.agent.0 as usize);
+    let toward = own.and_then(|agent| goals(&scenario.scene, &agent.route).first().copied());
+    let heading = |(label, option): &(String, Move)| match option {
+        Move::Heading(turn) => Some(Heading { label: label.clone(), toward: place(toward?), turn: *turn }),
+        _ => None,
+    };
+    Options {
+        agent: moves.agent.0,
+        seconds: scenario.clock.seconds(moves.duration),
+        routes: moves.options.iter().filter_map(route).collect(),
+        headings: moves.options.iter().filter_map(heading).collect(),
+    }
 }
 
 fn millimetres(length: f64) -> i64 {
@@ -91,6 +150,7 @@ impl Scene {
                     members: one.members.iter().map(|id| id.0).collect(),
                 })
                 .collect(),
+            options: scenario.moves.iter().map(|moves| options(scenario, moves)).collect(),
             agents: scenario.agents.len(),
         }
     }

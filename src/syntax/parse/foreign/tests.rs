@@ -5,7 +5,7 @@ use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
 
 /// Texts around a form.
-const AROUND: [&str; 17] = [
+const AROUND: [&str; 18] = [
     "%",
     "property p = %",
     "property p = % (b)",
@@ -18,6 +18,7 @@ const AROUND: [&str; 17] = [
     "process p { % = 0 }",
     "scene { % }",
     "scene { region r: % }",
+    "scene { wall % }",
     "agent a: k { at % }",
     "agent a: k { at = % }",
     "agent a: k { % }",

@@ -1,0 +1,57 @@
+//! `docs/gallery.md`: every model that ships is in it, its picture is the one that the program draws, and the answers of the quick
+//! models are those of the program.
+
+use crate::cookbook::copied;
+use crate::program::Place;
+use std::fs::{read_dir, read_to_string};
+use std::path::Path;
+
+/// Models that take longer on the page are not asked again, s; `tests/verdicts.rs` has their answers.
+const QUICK: f64 = 0.6;
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn the_gallery_shows_every_model_as_the_program_does() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = read_to_string(root.join("docs/gallery.md")).unwrap();
+    let place = Place::new(&[]);
+    for folder in ["models", "properties", "gaits"] {
+        copied(&root.join(folder), &place.path(folder));
+    }
+    let mut asked = 0;
+    for entry in read_dir(root.join("models")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let properties = format!("properties/{name}.bltl");
+        if path.extension().is_none_or(|end| end != "scn") || !root.join(&properties).exists() {
+            continue;
+        }
+        let model = format!("models/{name}.scn");
+        // A model whose recording was not there has no answer on the page.
+        let command = format!("smc check {model} {properties} --brief");
+        let Some((_, rest)) = page.split_once(&command) else {
+            let text = read_to_string(&path).unwrap();
+            assert!(text.contains("\ntracks "), "{name} is not in the gallery: run `sh docs/gallery.sh`");
+            continue;
+        };
+        if let Ok(kept) = read_to_string(root.join(format!("docs/gallery/{name}.svg"))) {
+            let drawn = place.call(&["show", &model, "--format", "svg", "--width", "170mm"]);
+            if drawn.code == Some(0) {
+                assert!(drawn.out == kept, "{name}.svg is not up to date: run `sh docs/gallery.sh`");
+            }
+        }
+        let (quoted, rest) = rest.split_once("```text\n").unwrap().1.split_once("\n…\n").unwrap();
+        let seconds = rest.split_once(" queries, ").unwrap().1.split_once(" s.").unwrap().0;
+        let has_tracks = read_to_string(&path).unwrap().contains("\ntracks ");
+        if seconds.parse::<f64>().unwrap() <= QUICK && !has_tracks {
+            let said = place.call(&["check", &model, &properties, "--brief", "-q"]);
+            let first = one_line(said.out.lines().next().unwrap_or_default());
+            assert_eq!(first, quoted, "{name}: run `sh docs/gallery.sh`");
+            asked += 1;
+        }
+    }
+    assert!(asked > 5, "{asked}");
+}
