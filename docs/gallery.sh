@@ -7,7 +7,9 @@
 set -eu
 cd "$(dirname "$0")/.."
 program=${1:-target/release/smc}
-data=${SMC_DATA:-../shared/data}
+data=${SMC_DATA:-../shared/data}/eth-biwi
+recordings=
+if test -d "$data"; then recordings="--data $data"; fi
 mkdir -p docs/gallery
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -26,19 +28,22 @@ trap 'rm -rf "$work"' EXIT
     # The comment at the head of the file.
     sed -n '/^\/\//!q; s/^\/\/ *//p' "$model"
     echo
-    if "$program" show "$model" --data "$data/eth-biwi" --format svg --width 170mm -o "$work/plan.svg" 2>/dev/null; then
+    if "$program" show "$model" $recordings --format svg --width 170mm -o "$work/plan.svg" 2>/dev/null; then
       if grep -q '^scene\|^  wall\|^agent' "$model"; then
         cp "$work/plan.svg" "docs/gallery/$name.svg"
         printf '![The plan of %s](gallery/%s.svg)\n\n' "$name" "$name"
       fi
       from=$(date +%s%N)
-      "$program" check "$model" "$properties" --data "$data/eth-biwi" --brief -q > "$work/brief" 2>/dev/null || true
+      "$program" check "$model" "$properties" $recordings --brief -q > "$work/brief" 2>/dev/null || true
       seconds=$(( ($(date +%s%N) - from) / 100000000 ))
-      printf '```\nsmc check %s %s --brief\n```\n\n```text\n' "$model" "$properties"
+      where=
+      if grep -q '^tracks .*"[^"]*/' "$model" || grep -q 'eth_biwi' "$model"; then where=' --data DIR'; fi
+      printf '```\nsmc check %s %s --brief%s\n```\n\n```text\n' "$model" "$properties" "$where"
       head -n 1 "$work/brief" | sed 's/  */ /g'
       printf '…\n```\n\n%s queries, %d.%d s.\n' "$(wc -l < "$work/brief" | tr -d ' ')" $((seconds / 10)) $((seconds % 10))
     else
-      echo 'The recording of this model is not here: [replay.md](replay.md) says where it is from.'
+      files=$(sed -n 's/^tracks .*"\(.*\)".*/`\1`/p' "$model" | tr '\n' ' ')
+      echo "The recording of this model was not here: ${files}([replay.md](replay.md) says where it is from)."
     fi
   done
 } > "$work/gallery.md"

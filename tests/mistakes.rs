@@ -101,6 +101,7 @@ fn parts(said: &str) -> (String, String, String) {
 fn a_message_names_place_cause_and_remedy() {
     let files = [
         include_str!("mistakes/logic.case"),
+        include_str!("mistakes/newcomers.case"),
         include_str!("mistakes/prism.case"),
         include_str!("mistakes/python.case"),
         include_str!("mistakes/slips.case"),

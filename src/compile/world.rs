@@ -21,7 +21,6 @@ use crate::compile::lower::{
     builtin::{BUILT_IN, OPERATORS},
     call, defaults,
 };
-use crate::compile::nearest;
 use crate::compile::people::{self, groups, kinds, places, routes, sources, step, stepping, tracks};
 use crate::compile::process;
 use crate::compile::scene::{self, periodic};
@@ -348,7 +347,7 @@ fn settle_clock<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, told: &mu
                     Code::E0207,
                     ["horizon", "step"].into_iter(),
                 );
-                let near = nearest::nearest(&name.name, ["horizon", "step"].into_iter());
+                let near = symbols::meant(&name.name, &["horizon", "step"]);
                 meant = [meant[0] || near == Some("horizon"), meant[1] || near == Some("step")];
                 let general =
                     "the settings of a scenario are `horizon` and `step`; a constant begins with `const`";

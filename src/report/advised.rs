@@ -79,7 +79,9 @@ pub fn table_of_users(users: &[User], seed: u64) -> String {
             median(all.flat_map(|(value, count)| std::iter::repeat_n(value, count as usize)))
         };
         let once = vec![1; users.len()];
-        let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
+        let shown = |value: Option<f64>| {
+            value.map_or_else(|| "-".to_owned(), |value| format!("{:.2}", hundredths(value)))
+        };
         let difference = bootstrap.estimate(|counts| middle(counts, &|[before, after]| after - before));
         let interval = difference.and_then(|one| one.interval);
         let _ = writeln!(
@@ -105,6 +107,11 @@ pub fn table_of_users(users: &[User], seed: u64) -> String {
         100.0 * followed as f64 / known.max(1) as f64
     );
     out
+}
+
+/// Rounded to hundredths, without a negative zero.
+fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0 + 0.0
 }
 
 /// The page.

@@ -171,12 +171,21 @@ impl<'a> Scope<'a> {
 }
 
 /// Words of other programs for fields, and the field.
-const SPOKEN: [(&[&str], &str); 4] = [
-    (&["goal", "goals", "target", "destination"], "route"),
-    (&["start", "origin", "position", "pos"], "at"),
-    (&["max_speed", "desired_speed", "preferred_speed", "v0"], "speed"),
+const SPOKEN: [(&[&str], &str); 7] = [
+    (&["goal", "goals", "target", "destination", "waypoint", "waypoints", "path"], "route"),
+    (&["start", "origin", "position", "pos", "from", "place"], "at"),
+    (&["max_speed", "max_velocity", "desired_speed", "preferred_speed", "v0", "vmax"], "speed"),
     (&["weight"], "mass"),
+    (&["size", "diameter", "width"], "radius"),
+    (&["duration", "time", "end", "length", "t_max", "tmax"], "horizon"),
+    (&["dt", "timestep", "time_step", "tick"], "step"),
 ];
+
+/// The known name that an unknown one stands for: in other programs, or as the nearest one.
+pub(crate) fn meant<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
+    let spoken = |ours: &&str| SPOKEN.iter().any(|(theirs, word)| word == ours && theirs.contains(&name));
+    known.iter().copied().find(spoken).or_else(|| nearest(name, known.iter().copied()))
+}
 
 /// An unknown name, with the nearest known one as a hint.
 pub(crate) fn unknown<'n>(
@@ -188,9 +197,7 @@ pub(crate) fn unknown<'n>(
 ) -> Diagnostic {
     let error = Diagnostic::error(code, span, format!("unknown {what} `{name}`"));
     let error = error.about(About::Name(name.to_owned()));
-    let known: Vec<&str> = known.collect();
-    let spoken = SPOKEN.iter().find(|(theirs, ours)| theirs.contains(&name) && known.contains(ours));
-    match spoken.map(|(_, ours)| *ours).or_else(|| nearest(name, known.into_iter())) {
+    match meant(name, &known.collect::<Vec<_>>()) {
         Some(near) => error.hint(format!("did you mean `{near}`?")),
         None => error,
     }

@@ -5,11 +5,12 @@ use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
 
 /// Texts around a form.
-const AROUND: [&str; 18] = [
+const AROUND: [&str; 19] = [
     "%",
     "property p = %",
     "property p = % (b)",
     "property p = a % b",
+    "property p = forall a in %: b",
     "let p %",
     "% var n = 1 }",
     "process p { var n = 1; %",
