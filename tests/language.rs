@@ -209,9 +209,9 @@ fn queries_and_clauses() {
         matches!(&queries[3].kind, QueryKind::Compare { first, second, .. } if first.len() == 2 && second.len() == 2)
     );
     assert!(
-        matches!(&queries[4].kind, QueryKind::Rank { of: Ranked::Moves { what, .. }, .. } if what.name == "moves")
+        matches!(&queries[4].kind, QueryKind::Rank { of: Ranked { moves: Some((what, _)), .. }, .. } if what.name == "moves")
     );
-    let QueryKind::Rank { of: Ranked::Values(list), .. } = &queries[5].kind else {
+    let QueryKind::Rank { of: Ranked { values: list, .. }, .. } = &queries[5].kind else {
         panic!("{:?}", queries[5])
     };
     let names: Vec<&str> = list.iter().map(|(name, _)| name.name.as_str()).collect();

@@ -318,3 +318,51 @@ fn statuses_follow_the_intervals() {
     }
     assert!(beaten > 6, "{beaten}");
 }
+
+/// Moves and values together: every combination is an option, under one certificate, and its witness repeats it.
+#[test]
+fn moves_and_values_are_ranked_together() {
+    let scenario = "horizon = 6 s\nstep = 0.02 s\nparam pace = 1 m/s in 0.5 m/s .. 2 m/s\n\
+        scene { region goal: rect (5, 0) .. (8, 4) }\n\
+        kind cart: sfm preset helbing2000 { speed = pace; noise = 0 m/s }\n\
+        agent robot: cart { at = (1, 2); route = goal }\nmoves robot for 3 s { stop }\n";
+    // 4 m take 2.7 s and 4.5 s with 1.5 m/s and 0.9 m/s, and 3 s more after a stop.
+    let ask =
+        "rank moves of robot, pace in 0.6 m/s, 0.9 m/s, 1.5 m/s by P(F<=4 s (robot in goal)) within 0.1\n";
+    let result = &results(scenario, ask, &[])[0];
+    assert_eq!(result["choice"], "own way, pace = 1.5 m/s", "{result:#}");
+    let mut all = labels(result);
+    all.sort_unstable();
+    let wanted: Vec<String> = ["own way", "stop"]
+        .iter()
+        .flat_map(|option| [0.6, 0.9, 1.5].map(|pace| format!("{option}, pace = {pace} m/s")))
+        .collect();
+    assert_eq!(all, wanted);
+    let options = result["options"].as_array().unwrap();
+    assert!(
+        options[1..].iter().all(|option| option["estimate"] == 0 && option["status"] == "beaten"),
+        "{result:#}"
+    );
+    let command = result["witnesses"][0]["command"].as_str().unwrap();
+    assert!(command.contains("--set 'pace=1.5 m/s'") && command.ends_with("--move 'own way'"), "{command}");
+    // Of each combination the best move is the same as in a ranking of that pace alone.
+    let alone =
+        &results(scenario, &ask.replace(", pace in 0.6 m/s, 0.9 m/s, 1.5 m/s", ""), &["--set", "pace=1.5"])
+            [0];
+    assert_eq!(alone["choice"], "own way", "{alone:#}");
+    // Of equal ones the own way at the first value is chosen.
+    let equal = &results(scenario, &ask.replace("<=4 s", "<=6 s").replace("0.6 m/s, ", ""), &[])[0];
+    assert_eq!(equal["choice"], "own way, pace = 0.9 m/s", "{equal:#}");
+    for (text, said) in [
+        (
+            "rank moves of robot, pace in 0.5 m/s .. 1.5 m/s by 0.0015 m/s by P(true) within 0.1\n",
+            "at most 1000 options",
+        ),
+        ("rank moves of robot, speed in 1, 2 by P(true) within 0.1\n", "unknown parameter"),
+        ("rank moves of cart, pace in 1 m/s, 2 m/s by P(true) within 0.1\n", "`cart`"),
+    ] {
+        let place = Place::new(&[("a.scn", scenario), ("a.bltl", text)]);
+        let found = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+        assert!(found.code == Some(2) && found.err.contains(said), "{text}{}", found.err);
+    }
+}

@@ -104,8 +104,11 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
             options.retain(|option| option.advice.is_none_or(|advice| !missing.contains(&advice)));
             for option in options {
                 let Some((of, k)) = of_path(option) else { continue };
-                option.label.clone_from(&moves[of].options[k].0);
-                option.deviation = moves[of].deviations()[k];
+                let values = option.settings.iter().map(|(name, value)| format!(", {name} = {value}"));
+                option.label = moves[of].options[k].0.clone() + &values.collect::<String>();
+                if option.settings.is_empty() {
+                    option.deviation = moves[of].deviations()[k];
+                }
             }
         }
     }

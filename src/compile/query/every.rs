@@ -8,7 +8,7 @@ use crate::compile::context::{
 use crate::compile::query::{bindings, compiler::Compiler, rankings, settings};
 use crate::compile::study;
 use crate::syntax::ast::property::Every;
-use crate::syntax::ast::{self, Binding, Expr, ExprKind, QueryKind, Ranked, Values};
+use crate::syntax::ast::{self, Binding, Expr, ExprKind, QueryKind, Values};
 use std::collections::BTreeMap;
 
 /// Most values of `under every`.
@@ -52,8 +52,8 @@ fn values_of(context: &mut Context<'_>, query: &ast::Query, every: &Every) -> Lo
             .report(error!(E0608, method.span, "a ranking under every value has its own procedure";
             hint: "leave `by {}` out", method.name.name));
     }
-    if let QueryKind::Rank { of: Ranked::Values(list), .. } = &query.kind
-        && list.iter().any(|(ranked, _)| ranked.name == *name)
+    if let QueryKind::Rank { of, .. } = &query.kind
+        && of.values.iter().any(|(ranked, _)| ranked.name == *name)
     {
         return context
             .report(error!(E0210, every.name.span, "`{name}` is set twice"; hint: "rank another parameter"));

@@ -44,16 +44,20 @@ pub(crate) fn rank<'a>(
     scope: ScopeId,
 ) -> Lowered<(Ask, bool, usize)> {
     let locals = Locals::of(scope);
-    let (candidates, measured, sketch) = match of {
-        Ranked::Moves { what, agent } => {
+    let (candidates, measured, sketch) = match (&of.moves, of.values.as_slice()) {
+        (Some((what, agent)), []) => {
             let (measured, sketch) = compiler.measured(site, measure, scope);
             (moves(compiler, site, what, agent, &locals), vec![measured], sketch)
         }
-        Ranked::Values(list) => {
+        (moved, list) => {
             let candidates = combinations(compiler, site, list, clauses, scope);
+            let candidates = match moved {
+                Some(moved) => candidates.and_then(|all| with_moves(compiler, site, moved, all, &locals)),
+                None => candidates,
+            };
             let context = &compiler.sites[site].context;
             let (before, failures) = (context.sink.diagnostics.len(), context.names.failures());
-            let worlds = candidates.as_ref().map_or(vec![site], |all| all.iter().map(|c| c.world).collect());
+            let worlds = candidates.as_ref().map_or(vec![site], |all| worlds(all));
             let (measured, sketches): (Vec<_>, Vec<_>) =
                 worlds.into_iter().map(|world| compiler.measured(world, measure, scope)).unzip();
             if candidates.is_err() {
@@ -87,9 +91,11 @@ pub(crate) fn rank<'a>(
     let measured: Vec<_> = measured.into_iter().collect::<Lowered<_>>()?;
     let (candidates, ranking) = (candidates?, procedure?);
     let (first, unbounded) = measured[0].clone();
-    // Moves are options of one world.
-    let each = || measured.iter().map(|(measure, _)| measure).cycle();
-    for (other, candidate) in each().zip(&candidates) {
+    // Options of one world share its measure.
+    let worlds = worlds(&candidates);
+    let at = |one: &Candidate| worlds.iter().position(|world| *world == one.world).unwrap_or_default();
+    let each: Vec<_> = candidates.iter().map(|one| &measured[at(one)].0).collect();
+    for (other, candidate) in each.iter().zip(&candidates) {
         if matches!(first.kind, MeasureKind::Expectation { .. }) && other.kind != first.kind {
             let settings = [candidates[0].settings.clone(), candidate.settings.clone()];
             let error =
@@ -97,11 +103,9 @@ pub(crate) fn rank<'a>(
             return compiler.sites[site].context.report(error);
         }
     }
-    if let Ranked::Values(list) = of {
-        check_used(compiler, site, list, &candidates, measure, scope)?;
-    }
+    check_used(compiler, site, &of.values, &candidates, measure, scope)?;
     let world = first.target.world;
-    let options = each().zip(candidates).map(|(measure, c)| RankOption {
+    let options = each.into_iter().zip(candidates).map(|(measure, c)| RankOption {
         label: c.label,
         settings: c.settings,
         target: measure.target,
@@ -151,6 +155,47 @@ fn moves(
         deviation,
     };
     Ok(all.map(candidate).collect())
+}
+
+/// The worlds of some options, each once, in their order.
+fn worlds(candidates: &[Candidate]) -> Vec<usize> {
+    let mut worlds: Vec<usize> = Vec::new();
+    for one in candidates {
+        if worlds.last() != Some(&one.world) {
+            worlds.push(one.world);
+        }
+    }
+    worlds
+}
+
+/// Each combination of values with each of the moves of its world.
+fn with_moves(
+    compiler: &mut Compiler<'_>,
+    site: usize,
+    (what, agent): &(Ident, Expr),
+    combinations: Vec<Candidate>,
+    locals: &Locals,
+) -> Lowered<Vec<Candidate>> {
+    // Errors are those of the world of the query.
+    moves(compiler, site, what, agent, locals)?;
+    let mut all = Vec::new();
+    for combination in combinations {
+        let moves = moves(compiler, combination.world, what, agent, locals)?;
+        let together = |own: Candidate| Candidate {
+            label: format!("{}, {}", own.label, combination.label),
+            settings: combination.settings.clone(),
+            ..own
+        };
+        all.extend(moves.into_iter().map(together));
+    }
+    if all.len() > MOST_OPTIONS {
+        let said = format!("a ranking has at most {MOST_OPTIONS} options (got {})", all.len());
+        return compiler.sites[site].context.report(error!(E0606, what.span, "{said}"));
+    }
+    for (k, one) in all.iter_mut().enumerate() {
+        one.deviation = k as f64;
+    }
+    Ok(all)
 }
 
 /// All combinations of the values of some parameters, those of the first slowest.

@@ -3,7 +3,7 @@
 use crate::compile::context::roster::Starts;
 use crate::compile::query::compiler::Compiler;
 use crate::compile::study::Ask;
-use crate::syntax::ast::{Query, QueryKind, Ranked};
+use crate::syntax::ast::{Query, QueryKind};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -46,8 +46,8 @@ fn asks_though_lost(compiler: &Compiler<'_>) -> bool {
 
 /// Notes which world a query asks about; a comparison, and a ranking of values, has some of its own.
 pub(crate) fn note_asked(compiler: &mut Compiler<'_>, query: &Query, world: usize) {
-    let has_own =
-        matches!(query.kind, QueryKind::Compare { .. } | QueryKind::Rank { of: Ranked::Values(_), .. });
+    let has_own = matches!(&query.kind, QueryKind::Compare { .. })
+        || matches!(&query.kind, QueryKind::Rank { of, .. } if !of.values.is_empty());
     if !has_own {
         compiler.asked.push((query.span, world));
     }

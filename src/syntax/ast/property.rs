@@ -65,7 +65,7 @@ impl Query {
         let among = |bindings: &[Binding]| bindings.iter().any(|binding| binding.name.name == name);
         let by_kind = match &self.kind {
             QueryKind::Compare { first, second, .. } => among(first) && among(second),
-            QueryKind::Rank { of: Ranked::Values(list), .. } => list.iter().any(|(own, _)| own.name == name),
+            QueryKind::Rank { of, .. } => of.values.iter().any(|(own, _)| own.name == name),
             _ => false,
         };
         by_kind
@@ -108,16 +108,11 @@ pub enum QueryKind {
 
 /// The options of a ranking.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Ranked {
-    /// `moves of user`
-    Moves {
-        /// `moves`; compilation refuses any other word.
-        what: Ident,
-        /// Whose.
-        agent: Expr,
-    },
-    /// `lane in 1 m .. 3 m by 0.5 m, speed in 0.8 m/s, 1.2 m/s`: all combinations.
-    Values(Vec<(Ident, Values)>),
+pub struct Ranked {
+    /// `moves of user`: the word, of which compilation refuses any but `moves` and `paths`, and whose they are.
+    pub moves: Option<(Ident, Expr)>,
+    /// `lane in 1 m .. 3 m by 0.5 m, speed in 0.8 m/s, 1.2 m/s`: all combinations, with each of the moves.
+    pub values: Vec<(Ident, Values)>,
 }
 
 /// Values of a parameter.

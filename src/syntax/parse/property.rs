@@ -70,9 +70,10 @@ impl Builder<'_> {
 
     /// What a ranking chooses from.
     fn options(&mut self, parts: &mut Parts<'_>) -> Option<Ranked> {
-        if let Some(what) = parts.part(Rule::name) {
-            return Some(Ranked::Moves { what: self.ident(&what), agent: self.expr(parts.part(Rule::set)?) });
-        }
+        let moves = match parts.part(Rule::name) {
+            Some(what) => Some((self.ident(&what), self.expr(parts.part(Rule::set)?))),
+            None => None,
+        };
         let mut list = Vec::new();
         while let Some(ranked) = parts.part(Rule::ranked) {
             let mut parts = Parts::of(ranked);
@@ -80,7 +81,7 @@ impl Builder<'_> {
             let values = self.values(&name, parts.next()?)?;
             list.push((name, values));
         }
-        Some(Ranked::Values(list))
+        Some(Ranked { moves, values: list })
     }
 
     fn values(&mut self, name: &Ident, pair: Pair<'_>) -> Option<Values> {
