@@ -55,3 +55,44 @@ fn the_gallery_shows_every_model_as_the_program_does() {
     }
     assert!(asked > 5, "{asked}");
 }
+
+/// The anchors of the headings of a page.
+fn anchors(page: &str) -> Vec<String> {
+    let mut is_inside = false;
+    let mut found = Vec::new();
+    for line in page.lines() {
+        is_inside ^= line.starts_with("```");
+        if let Some(title) = line.strip_prefix('#').filter(|_| !is_inside) {
+            let words = title.trim_start_matches('#').trim().to_lowercase();
+            let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+            found.push(kept.collect::<String>().replace(' ', "-"));
+        }
+    }
+    found
+}
+
+#[test]
+fn links_of_the_pages_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let pages = read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let pages = pages.filter(|path| path.extension().is_some_and(|end| end == "md"));
+    let mut count = 0;
+    for path in pages.chain([root.join("README.md"), root.join("CONTRIBUTING.md")]) {
+        let text = read_to_string(&path).unwrap();
+        // What stands between fences are no links.
+        let prose: String = text.split("```").step_by(2).collect();
+        for link in prose.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link) {
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let to = if file.is_empty() { path.clone() } else { path.parent().unwrap().join(file) };
+            if file.contains("://") {
+                continue;
+            }
+            assert!(to.exists(), "{}: {link} leads nowhere", path.display());
+            let is_there =
+                anchor.is_empty() || anchors(&read_to_string(&to).unwrap()).iter().any(|one| one == anchor);
+            assert!(is_there, "{}: {link} has no such heading", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 200, "{count} links");
+}

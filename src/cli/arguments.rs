@@ -25,7 +25,7 @@ use std::path::PathBuf;
 #[command(name = "smc", version, about, long_about = None, max_term_width = 100)]
 #[command(
     after_help = "Exit codes: 0 satisfied, 1 violated, 2 wrong call or input, 3 undecided, 4 short of time or trials, 130 interrupted, 70 a bug.\n\
-    Start with: smc check models/corridor.scn properties/corridor.bltl"
+    Start with: smc check models/hall.scn properties/hall.bltl"
 )]
 pub(super) struct Arguments {
     /// The verb.
@@ -70,7 +70,7 @@ pub(super) enum Verb {
     Gait(Box<GaitCommand>),
     /// Run a shard of a plan, on any machine, and write its part.
     Shard(Box<ShardCommand>),
-    /// Answer the queries from the parts of shards in a folder, DIR; the plan of what is lacking is written there.
+    /// Answer the queries from the parts of shards in a folder, DIR; if parts are missing, write the plan of a further round there.
     Merge(Box<Merge>),
     /// Format scenarios and property files; comments are kept.
     Fmt(Format),
