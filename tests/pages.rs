@@ -382,3 +382,21 @@ fn a_page_works_in_a_browser() {
         }
     });
 }
+
+/// People of a stream without ids are played by the traces that are inferred of them.
+#[test]
+fn a_page_of_a_stream_plays_people_without_an_id() {
+    let place = Place::new(&[
+        ("lidar.scn", include_str!("../examples/cookbook/lidar.scn")),
+        ("square.bltl", include_str!("../properties/square.bltl")),
+        ("square.jsonl", include_str!("../models/square.jsonl")),
+    ]);
+    let words = ["advise", "lidar.scn", "square.bltl", "--tracks", "lidar", "--to", "2s"];
+    let said = place.call(&[&words[..], &["--total-trials", "60", "--report", "l.html"]].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let data = data(&std::fs::read_to_string(place.path("l.html")).unwrap());
+    let names: Vec<&str> =
+        list(&data["traces"][0], "tracks").iter().map(|track| track["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"user"), "{names:?}");
+    assert!(names.iter().filter(|name| name.starts_with("trace[")).count() >= 5, "{names:?}");
+}

@@ -2,7 +2,7 @@
 
 use super::picture::Picture;
 use super::{Drawing, Ink};
-use crate::base::geometry::{Bounds, Vec2};
+use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::model::{Agent, Goal, Leg, Move, Obstacle, Parameter, Position, Route, Scenario, Scene};
 use crate::report::number::plain;
 use crate::route::{Atlas, Bend};
@@ -13,14 +13,17 @@ const STEP: f64 = 0.1;
 /// Points on each side of a start among which one beside the barriers is sought.
 const TRIED: u32 = 12;
 
-/// The middle of a start, or the place next to it at which a body of this radius, m, touches no barrier; none of a start near
-/// somebody.
+/// The place where a way begins; none of a start near somebody.
 fn start(scene: &Scene, agent: &Agent, radius: f64) -> Option<Vec2> {
-    let shape = match &agent.start.position {
-        Position::Point(point) => return Some(*point),
-        Position::Within(shape) => shape,
-        Position::Near { .. } => return None,
-    };
+    match &agent.start.position {
+        Position::Point(point) => Some(*point),
+        Position::Within(shape) => Some(beside_barriers(scene, shape, radius)),
+        Position::Near { .. } => None,
+    }
+}
+
+/// The middle of a shape, or the place next to it at which a body of this radius, m, touches no barrier.
+fn beside_barriers(scene: &Scene, shape: &Shape, radius: f64) -> Vec2 {
     let is_free = |p: &Vec2| {
         scene.walls().all(|wall| wall.distance(*p) >= radius)
             && scene.solids().all(|solid| solid.distance(*p) >= radius)
@@ -32,7 +35,7 @@ fn start(scene: &Scene, agent: &Agent, radius: f64) -> Option<Vec2> {
         bounds.low + (bounds.high - bounds.low).component_mul(&share)
     });
     let free = std::iter::once(middle).chain(tried).filter(|p| shape.contains(*p)).filter(is_free);
-    free.min_by(|a, b| (a - middle).norm().total_cmp(&(b - middle).norm())).or(Some(middle))
+    free.min_by(|a, b| (a - middle).norm().total_cmp(&(b - middle).norm())).unwrap_or(middle)
 }
 
 /// The way of an agent from the middle of its start through all goals of a route: its points and its length, m.
@@ -189,4 +192,23 @@ fn middle(points: &[Vec2]) -> Vec2 {
         left -= length;
     }
     points[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::geometry::Segment;
+    use crate::model::Barrier;
+
+    #[test]
+    fn a_way_begins_beside_the_wall_that_a_start_spans() {
+        let wall = Segment::new(Vec2::new(5.0, 0.0), Vec2::new(5.0, 4.0));
+        let barrier = Barrier { name: String::new(), obstacle: Obstacle::Wall(vec![wall]) };
+        let scene = Scene { barriers: vec![barrier], ..Scene::default() };
+        let shape = Shape::rectangle(Vec2::new(0.0, 0.0), Vec2::new(10.0, 4.0));
+        let begin = beside_barriers(&scene, &shape, 0.25);
+        let aside = (begin.x - 5.0).abs();
+        assert!((0.25..1.0).contains(&aside) && (begin.y - 2.0).abs() < 0.5, "{begin}");
+        assert_eq!(beside_barriers(&Scene::default(), &shape, 0.25), Vec2::new(5.0, 2.0));
+    }
 }

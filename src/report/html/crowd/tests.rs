@@ -129,3 +129,28 @@ fn a_number_of_crossings_never_falls() {
         .collect();
     assert!(heights.len() > 100 && heights.is_sorted_by(|a, b| a >= b), "{heights:?}");
 }
+
+#[test]
+fn people_who_left_are_counted_by_exit() {
+    use crate::base::geometry::Shape;
+    use crate::model::Region;
+    let region = |name: &str, x: f64| Region {
+        name: name.to_owned(),
+        shape: Shape::rectangle(Vec2::new(x, -9.0), Vec2::new(x + 1.0, 9.0)),
+    };
+    let scene = Scene { regions: vec![region("west", -3.0), region("east", 3.0)], ..Scene::default() };
+    // Six go east and are there after 3.0, 3.5, ... s; two stay.
+    let walks: Vec<Walk> = (0..8)
+        .map(|k| match k {
+            0..6 => walk(k, 31 + 5 * k, move |time| (time.min(3.2), k as f64)),
+            _ => walk(k, 81, move |_| (0.0, k as f64)),
+        })
+        .collect();
+    let (crowds, _) = crowds(&CallResult::default(), &[trial(scene.clone(), &walks)]);
+    assert_eq!(crowds[0].exits, [["east", "6", "2", "5.5"]]);
+    let map = crowds[0].figures.iter().find(|figure| figure.caption.starts_with("Time to leave"));
+    assert!(map.is_some_and(|map| map.svg.contains("<rect")));
+    // In a recording people are only not seen any more.
+    let (crowds, _) = super::crowds(&CallResult::default(), &[recorded("r", scene, &walks).unwrap()]);
+    assert!(crowds[0].exits.is_empty());
+}
