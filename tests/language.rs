@@ -209,7 +209,7 @@ fn queries_and_clauses() {
         matches!(&queries[3].kind, QueryKind::Compare { first, second, .. } if first.len() == 2 && second.len() == 2)
     );
     assert!(
-        matches!(&queries[4].kind, QueryKind::Rank { of: Ranked { moves: Some((what, _)), .. }, .. } if what.name == "moves")
+        matches!(&queries[4].kind, QueryKind::Rank { of: Ranked { moves, .. }, .. } if moves[0].0.name == "moves")
     );
     let QueryKind::Rank { of: Ranked { values: list, .. }, .. } = &queries[5].kind else {
         panic!("{:?}", queries[5])

@@ -319,6 +319,43 @@ fn statuses_follow_the_intervals() {
     assert!(beaten > 6, "{beaten}");
 }
 
+/// Moves of two agents together: each pair is an option, and its command shows it.
+#[test]
+fn moves_of_two_agents_are_ranked_together() {
+    let scenario = "horizon = 8 s\nstep = 0.02 s\n\
+        scene { wall (0, 0) -- (12, 0); wall (0, 1.2) -- (12, 1.2); region east: rect (10, 0) .. (12, 1.2)\n\
+        region west: rect (0, 0) .. (2, 1.2) }\n\
+        kind cart: sfm preset helbing2000 { radius = 0.25 m; speed = 1.2 m/s; noise = 0 m/s }\n\
+        agent a: cart { at = (2.5, 0.6); route = east }\nagent b: cart { at = (9.5, 0.6); route = west }\n\
+        moves a for 8 s { stop }\nmoves b for 8 s { stop }\n";
+    let ask = "property apart = G<=7 s (distance(a, b) > 5 m)\nrank moves of a, moves of b by P(apart) within 0.1\n";
+    let result = &results(scenario, ask, &[])[0];
+    // Only if both stand they stay apart.
+    assert_eq!(result["choice"], "a: stop and b: stop", "{result:#}");
+    assert_eq!(labels(result).len(), 4);
+    let command = result["witnesses"][0]["command"].as_str().unwrap();
+    assert!(command.ends_with("--move 'a: stop and b: stop'"), "{command}");
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", ask)]);
+    let table = place.call(&["simulate", "a.scn", "--move", "a: stop and b: own way", "--every", "350"]).out;
+    let x = |name: &str| -> Vec<f64> {
+        let rows = table.lines().filter(|line| line.split(',').nth(2) == Some(name));
+        rows.map(|line| line.split(',').nth(3).unwrap().parse().unwrap()).collect()
+    };
+    let (a, b) = (x("a"), x("b"));
+    assert!((a[0] - 2.5).abs() < 1e-9 && a[1] < 3.2 && b[1] < 8.0, "{table}");
+    for (text, said) in [
+        ("rank moves of a, moves of a by P(true)\n", "listed twice"),
+        ("rank moves of a, moves of b, moves of a by P(true)\n", "at most two agents"),
+        ("rank moves of a, paths of b by P(true)\n", "paths cannot be combined"),
+    ] {
+        place.write("a.bltl", text.as_bytes());
+        let found = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+        assert!(found.code == Some(2) && found.err.contains(said), "{text}{}", found.err);
+    }
+    let unknown = place.call(&["simulate", "a.scn", "--move", "a: stop and c: stop"]);
+    assert!(unknown.code == Some(2) && unknown.err.contains("unknown moves"), "{}", unknown.err);
+}
+
 /// Moves and values together: every combination is an option, under one certificate, and its witness repeats it.
 #[test]
 fn moves_and_values_are_ranked_together() {

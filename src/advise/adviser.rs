@@ -372,7 +372,13 @@ impl<'a> Adviser<'a> {
     /// The ranking that is asked.
     fn query<'s>(&self, study: &'s Study) -> Result<&'s Query, Diagnostic> {
         let is_ranking = |query: &&Query| match &query.ask {
-            Ask::Rank { options, .. } => options.iter().all(|option| option.advice.is_some()),
+            // One of values as well has several worlds, which are not advice.
+            Ask::Rank { options, models, .. } => {
+                let mut worlds: Vec<usize> = options.iter().map(|option| option.target.world).collect();
+                worlds.sort_unstable();
+                worlds.dedup();
+                options.iter().all(|option| option.advice.is_some()) && worlds.len() <= *models
+            }
             _ => false,
         };
         let mut rankings = study.queries.iter().filter(is_ranking);

@@ -93,7 +93,7 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
             let Ask::Rank { options, .. } = &mut query.ask else { continue };
             let of_path = |option: &RankOption| {
                 let here = option.advice.filter(|_| option.target.world == number);
-                here.filter(|(of, _)| moves[*of].paths.is_some())
+                here.filter(|(of, _)| moves.get(*of).is_some_and(|moves| moves.paths.is_some()))
             };
             // Under every value of a parameter a path stands in several worlds; one of them without it has none to rank.
             let missing: Vec<_> = options

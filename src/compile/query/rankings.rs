@@ -44,16 +44,16 @@ pub(crate) fn rank<'a>(
     scope: ScopeId,
 ) -> Lowered<(Ask, bool, usize)> {
     let locals = Locals::of(scope);
-    let (candidates, measured, sketch) = match (&of.moves, of.values.as_slice()) {
-        (Some((what, agent)), []) => {
+    let (candidates, measured, sketch) = match of.values.as_slice() {
+        [] => {
             let (measured, sketch) = compiler.measured(site, measure, scope);
-            (moves(compiler, site, what, agent, &locals), vec![measured], sketch)
+            (together(compiler, (site, site), &of.moves, &locals), vec![measured], sketch)
         }
-        (moved, list) => {
+        list => {
             let candidates = combinations(compiler, site, list, clauses, scope);
-            let candidates = match moved {
-                Some(moved) => candidates.and_then(|all| with_moves(compiler, site, moved, all, &locals)),
-                None => candidates,
+            let candidates = match of.moves.as_slice() {
+                [] => candidates,
+                moved => candidates.and_then(|all| with_moves(compiler, site, moved, all, &locals)),
             };
             let context = &compiler.sites[site].context;
             let (before, failures) = (context.sink.diagnostics.len(), context.names.failures());
@@ -116,6 +116,46 @@ pub(crate) fn rank<'a>(
     Ok((Ask::Rank { options, measure: first, ranking, models: 1 }, unbounded, world))
 }
 
+/// The options of the moves of one agent, or all pairs of moves of two, in a world. Errors are those of `site`.
+fn together(
+    compiler: &mut Compiler<'_>,
+    (site, world): (usize, usize),
+    moved: &[(Ident, Expr)],
+    locals: &Locals,
+) -> Lowered<Vec<Candidate>> {
+    let [(what, agent), rest @ ..] = moved else { return Err(Reported) };
+    let first = moves(compiler, world, what, agent, locals)?;
+    let Some((other_what, other)) = rest.first() else { return Ok(first) };
+    let context = &mut compiler.sites[site].context;
+    if let Some((third, _)) = rest.get(1) {
+        let error = error!(E0606, third.span, "a ranking combines the moves of at most two agents");
+        return context.report(error);
+    }
+    if let Some(paths) = [what, other_what].into_iter().find(|what| what.name == "paths") {
+        let error = error!(E0606, paths.span, "paths cannot be combined with moves of another agent");
+        return context.report(error);
+    }
+    let second = moves(compiler, world, other_what, other, locals)?;
+    let declaration = |all: &[Candidate]| all.first().and_then(|one| one.advice).map(|(at, _)| at);
+    if declaration(&first) == declaration(&second) {
+        let error = error!(E0606, other.span, "the moves of one agent are listed twice");
+        return compiler.sites[site].context.report(error.hint("name another agent"));
+    }
+    let Some(scenario) = &compiler.sites[world].scenario else { return Err(Reported) };
+    let pairs = first.iter().flat_map(|one| second.iter().map(move |two| (one, two)));
+    let pair = |(k, (one, two)): (usize, (&Candidate, &Candidate))| {
+        let advice = scenario.both(one.advice?, two.advice?)?;
+        let label = scenario.move_name(advice)?;
+        Some(Candidate { world, label, settings: Vec::new(), advice: Some(advice), deviation: k as f64 })
+    };
+    let all: Vec<Candidate> = pairs.enumerate().filter_map(pair).collect();
+    if all.len() > MOST_OPTIONS {
+        let said = format!("a ranking has at most {MOST_OPTIONS} options (got {})", all.len());
+        return compiler.sites[site].context.report(error!(E0606, what.span, "{said}"));
+    }
+    Ok(all)
+}
+
 /// The options of moves.
 fn moves(
     compiler: &mut Compiler<'_>,
@@ -172,25 +212,25 @@ fn worlds(candidates: &[Candidate]) -> Vec<usize> {
 fn with_moves(
     compiler: &mut Compiler<'_>,
     site: usize,
-    (what, agent): &(Ident, Expr),
+    moved: &[(Ident, Expr)],
     combinations: Vec<Candidate>,
     locals: &Locals,
 ) -> Lowered<Vec<Candidate>> {
     // Errors are those of the world of the query.
-    moves(compiler, site, what, agent, locals)?;
+    together(compiler, (site, site), moved, locals)?;
     let mut all = Vec::new();
     for combination in combinations {
-        let moves = moves(compiler, combination.world, what, agent, locals)?;
-        let together = |own: Candidate| Candidate {
+        let moves = together(compiler, (site, combination.world), moved, locals)?;
+        let valued = |own: Candidate| Candidate {
             label: format!("{}, {}", own.label, combination.label),
             settings: combination.settings.clone(),
             ..own
         };
-        all.extend(moves.into_iter().map(together));
+        all.extend(moves.into_iter().map(valued));
     }
     if all.len() > MOST_OPTIONS {
         let said = format!("a ranking has at most {MOST_OPTIONS} options (got {})", all.len());
-        return compiler.sites[site].context.report(error!(E0606, what.span, "{said}"));
+        return compiler.sites[site].context.report(error!(E0606, moved[0].0.span, "{said}"));
     }
     for (k, one) in all.iter_mut().enumerate() {
         one.deviation = k as f64;

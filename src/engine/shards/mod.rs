@@ -119,8 +119,8 @@ fn outcomes(
     threads: &Threads,
     budget: &Budget,
 ) -> Result<Option<Body>, Fault> {
-    let moves = &prepared.program.scenario.moves;
-    if trials.advice.is_some_and(|(at, option)| moves.get(at).is_none_or(|all| option >= all.options.len())) {
+    let scenario = &prepared.program.scenario;
+    if trials.advice.is_some_and(|advice| scenario.singles(advice).is_none()) {
         return Err(Fault::Unsuitable);
     }
     let job = Job::new(prepared, trials.columns.clone(), seed);

@@ -44,13 +44,16 @@ pub fn load(
         return Ok(Loaded::default());
     }
     let advised = match advice {
-        None => None,
+        None => [None; 2],
         Some((declaration, option)) => {
-            let moves = scenario.moves.get(declaration);
-            let chosen = moves.and_then(|moves| Some((moves, moves.options.get(option)?.1)));
-            let (moves, chosen) = chosen.ok_or(Fault::Advice { declaration, option })?;
-            let heeded = program.behaviours.heeds(&program.processes.initial, key, moves.agent.0 as usize);
-            heeded.then_some((moves.agent, (chosen, moves.duration.0)))
+            let singles = scenario.singles((declaration, option));
+            let heeded = |(declaration, option): (usize, usize)| {
+                let moves = &scenario.moves[declaration];
+                let agent = moves.agent.0 as usize;
+                let is_heeded = program.behaviours.heeds(&program.processes.initial, key, agent);
+                is_heeded.then_some((moves.agent, (moves.options[option].1, moves.duration.0)))
+            };
+            singles.ok_or(Fault::Advice { declaration, option })?.map(|one| one.and_then(heeded))
         }
     };
     let mut bodies = Vec::with_capacity(scenario.agents.len());
@@ -70,7 +73,8 @@ pub fn load(
     for (k, body) in bodies.into_iter().enumerate() {
         let Some(mut body) = body else { continue };
         body[Parameter::Radius as usize] = placed.radii[k];
-        let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
+        let own =
+            advised.iter().flatten().find(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| *advice);
         enter(program, state, (k, lane), (Occasion::Begins, own), &body, placed.positions[k]);
     }
     entrance::open(program, state, lane);

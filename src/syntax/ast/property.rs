@@ -109,8 +109,8 @@ pub enum QueryKind {
 /// The options of a ranking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
-    /// `moves of user`: the word, of which compilation refuses any but `moves` and `paths`, and whose they are.
-    pub moves: Option<(Ident, Expr)>,
+    /// `moves of user`: the word, of which compilation refuses any but `moves` and `paths`, and whose they are; of one agent or two.
+    pub moves: Vec<(Ident, Expr)>,
     /// `lane in 1 m .. 3 m by 0.5 m, speed in 0.8 m/s, 1.2 m/s`: all combinations, with each of the moves.
     pub values: Vec<(Ident, Values)>,
 }

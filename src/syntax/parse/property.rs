@@ -70,13 +70,16 @@ impl Builder<'_> {
 
     /// What a ranking chooses from.
     fn options(&mut self, parts: &mut Parts<'_>) -> Option<Ranked> {
-        let moves = match parts.part(Rule::name) {
-            Some(what) => Some((self.ident(&what), self.expr(parts.part(Rule::set)?))),
-            None => None,
-        };
-        let mut list = Vec::new();
-        while let Some(ranked) = parts.part(Rule::ranked) {
-            let mut parts = Parts::of(ranked);
+        let (mut moves, mut list) = (Vec::new(), Vec::new());
+        while let Some(factor) = parts.part(Rule::factor) {
+            let mut factor = Parts::of(factor);
+            if let Some(moved) = factor.part(Rule::moves_of) {
+                let mut parts = Parts::of(moved);
+                let what = self.ident(&parts.part(Rule::name)?);
+                moves.push((what, self.expr(parts.part(Rule::set)?)));
+                continue;
+            }
+            let mut parts = Parts::of(factor.part(Rule::ranked)?);
             let name = self.ident(&parts.part(Rule::ident)?);
             let values = self.values(&name, parts.next()?)?;
             list.push((name, values));
