@@ -79,7 +79,7 @@ fn links_of_the_pages_lead_somewhere() {
     let mut count = 0;
     for path in pages.chain([root.join("README.md"), root.join("CONTRIBUTING.md")]) {
         let text = read_to_string(&path).unwrap();
-        // What stands between fences are no links.
+        // Brackets between fences are code.
         let prose: String = text.split("```").step_by(2).collect();
         for link in prose.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link) {
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));

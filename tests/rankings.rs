@@ -382,12 +382,12 @@ fn moves_and_values_are_ranked_together() {
     );
     let command = result["witnesses"][0]["command"].as_str().unwrap();
     assert!(command.contains("--set 'pace=1.5 m/s'") && command.ends_with("--move 'own way'"), "{command}");
-    // Of each combination the best move is the same as in a ranking of that pace alone.
+    // The best move is the same in a ranking of that pace alone.
     let alone =
         &results(scenario, &ask.replace(", pace in 0.6 m/s, 0.9 m/s, 1.5 m/s", ""), &["--set", "pace=1.5"])
             [0];
     assert_eq!(alone["choice"], "own way", "{alone:#}");
-    // Of equal ones the own way at the first value is chosen.
+    // The own way at the first value is chosen among equal ones.
     let equal = &results(scenario, &ask.replace("<=4 s", "<=6 s").replace("0.6 m/s, ", ""), &[])[0];
     assert_eq!(equal["choice"], "own way, pace = 0.9 m/s", "{equal:#}");
     for (text, said) in [

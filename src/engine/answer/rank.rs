@@ -32,7 +32,7 @@ impl<'q> Sampling<'q> for RankSampling<'q> {
     }
 }
 
-/// What an agent does that is advised to stop.
+/// The doing of an agent that is advised to stop.
 fn means(prepared: &PreparedWorld, advice: Option<(usize, usize)>) -> Option<String> {
     let scenario = &prepared.program.scenario;
     let moves = scenario.moves.get(advice?.0)?;

@@ -60,7 +60,7 @@ impl Course {
     pub(super) fn led(&self, shape: &Shape, by: f64, scale: f64) -> Shape {
         let within = if self.is_straight { AT_ONCE } else { (by.abs() / WIDEST).clamp(AT_ONCE, 1.0) };
         let arc = (end_of(shape).norm() * scale * within).max(1e-6);
-        // Where each piece begins, and its direction.
+        // The beginning of each piece, and its direction.
         let mut pieces = [(Vec2::zeros(), Vec2::x()); PIECES];
         let mut at = Vec2::zeros();
         for (k, piece) in pieces.iter_mut().enumerate() {

@@ -19,7 +19,7 @@ const AHEAD: f64 = 0.2;
 #[derive(Clone, Copy, Debug)]
 struct Onward {
     anchor: Vec2,
-    /// Where it leads from there.
+    /// The anchor after it.
     next: Vec2,
     rest: f64,
     /// The last anchor before the goal; `None` if the anchor is the goal.

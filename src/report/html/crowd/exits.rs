@@ -13,9 +13,9 @@ const BESIDE: f64 = 1.0;
 /// Somebody who left.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leaver {
-    /// Where this person was first, m.
+    /// The first place, m.
     pub(super) from: Vec2,
-    /// Where this person was last, m.
+    /// The last place, m.
     to: Vec2,
     /// When this person left, s.
     at: f64,

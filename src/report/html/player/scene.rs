@@ -61,7 +61,7 @@ struct Options {
 #[derive(Debug, Serialize)]
 struct NamedRoute {
     label: String,
-    /// Of each goal x and y in turn.
+    /// The goals: x and y in turn.
     points: Vec<i64>,
 }
 
