@@ -52,7 +52,7 @@ pub fn same_length(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(shown).collect())
 }
 
-/// A text in which numbers of more than [`DIGITS`] digits are written with an exponent: `1e300`.
+/// A text in which numbers of more than `DIGITS` digits are written with an exponent: `1e300`.
 pub fn shortened(text: String) -> String {
     if text.len() <= DIGITS {
         return text;

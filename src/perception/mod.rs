@@ -1,8 +1,8 @@
 //! Floor 3: from observations to traces and groups (Given-Wilson, Legay, Sedwards, Zendra, "Modelling of
 //! Machine-Aided Human Group Motion", 2017, Algorithms 2 and 3).
 //!
-//! [`Tracker`] continues traces with the batches of one time, [`clusters`] groups the people of an instant, [`Lineage`]
-//! gives groups their numbers over time, and [`infer`] does all of it for a whole recording.
+//! [`Tracker`] continues traces with the batches of one time, [`clusters()`] groups the people of an instant, [`Lineage`]
+//! gives groups their numbers over time, and [`infer()`] does all of it for a whole recording.
 
 pub mod assignment;
 pub mod clusters;

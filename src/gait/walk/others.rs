@@ -24,7 +24,7 @@ pub struct OtherBody {
 }
 
 /// The smallest gap between a body of a radius on a step and others at constant velocity, m. Negative where they overlap.
-/// Gaps of [`WIDE`] and more make no difference: then it is not exact, and infinite without others.
+/// Gaps of `WIDE` and more make no difference: then it is not exact, and infinite without others.
 pub fn least_gap(step: &PlacedStep, radius: f64, others: &[OtherBody]) -> f64 {
     let places: [Vec2; LINES as usize + 1] = std::array::from_fn(|k| step.place(k as f64 / f64::from(LINES)));
     let far = places.iter().map(|place| (place - places[0]).norm_squared()).fold(0.0, f64::max).sqrt();
