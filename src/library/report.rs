@@ -62,11 +62,6 @@ impl Report {
         &self.run
     }
 
-    /// The report as a JSON value, as `--format json` writes it.
-    pub fn to_json(&self) -> serde_json::Value {
-        crate::report::json::object(&self.run)
-    }
-
     /// The report in one of the formats of the command line.
     pub fn render(&self, format: Format) -> String {
         render(&self.run, format, Palette::PLAIN)
