@@ -5,6 +5,7 @@
 //! supermartingales; those m that neither has refuted by the factor 2 / delta form a confidence sequence.
 //! Only the law of a pair is used: any dependence within a pair is allowed.
 
+use super::bets::{geometric, log_mean};
 use super::invalid::{Invalid, probability, range};
 use super::{Coverage, Interval, Outcome};
 use crate::base::math;
@@ -62,18 +63,11 @@ fn log_against(pairs: Pairs, m: f64, bets: &[f64; BETS]) -> f64 {
             + pairs.alike as f64 * math::ln_1p(-stake * m)
             + pairs.second as f64 * math::ln_1p(-bet);
     }
-    let most = logs.iter().fold(f64::NEG_INFINITY, |a, b| math::at_least(a, *b));
-    let sum: f64 = logs.iter().map(|log| math::exp(log - most)).sum();
-    most + math::ln(sum / BETS as f64)
+    log_mean(&logs)
 }
 
 fn bets() -> [f64; BETS] {
-    let mut bets = [0.0; BETS];
-    for (k, bet) in bets.iter_mut().enumerate() {
-        let part = k as f64 / (BETS - 1) as f64;
-        *bet = math::exp(math::ln(LEAST_BET) + part * math::ln(MOST_BET / LEAST_BET));
-    }
-    bets
+    geometric(LEAST_BET, MOST_BET)
 }
 
 /// The largest m that is refuted from below; -1 if there is none.

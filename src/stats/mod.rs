@@ -15,6 +15,7 @@
 //! | P to a relative error | [`Gbas`] |
 //! | P at any time | [`sequence`] |
 //! | mean of a bounded metric | [`Mean`] |
+//! | mean of its largest share | [`Tail`] |
 //! | quantiles, distribution | [`quantile`], [`Histogram`] |
 //! | difference of two probabilities | [`Difference`] |
 //! | which of k moves | [`ranking`] |
@@ -24,7 +25,9 @@
 //! | how good are predicted probabilities | [`Predictions`], [`BrierScore`], [`Quality`] |
 //! | a statistic of persons, each with many instants | [`Bootstrap`] |
 
+mod bets;
 pub mod bootstrap;
+mod bounded;
 pub mod brier;
 pub mod calibration;
 pub mod counts;
@@ -41,15 +44,18 @@ pub mod procedures;
 pub mod quality;
 pub mod quantile;
 pub mod ranking;
+mod running;
 pub mod sequence;
 pub mod sequential;
 pub mod spec;
 pub mod splitting;
+mod tail;
 pub mod test;
 pub mod twosample;
 mod width;
 
 pub use bootstrap::{Bootstrap, Estimate};
+pub use bounded::Bounded;
 pub use brier::{BrierScore, Prediction, Predictions};
 pub use counts::{Counts, Outcome};
 pub use cusum::Cusum;
@@ -66,6 +72,8 @@ pub use procedures::{
     spending, sprt, two_sprt,
 };
 pub use quality::Quality;
+pub use running::Running;
 pub use sequential::{Readings, Rule, Sequential};
 pub use spec::{Chosen, Spec};
+pub use tail::Tail;
 pub use test::{Claim, Decision, Hypothesis, Statement, Test, Verdict, Weight, Weights};

@@ -2,7 +2,7 @@
 //! likely to take, and how it is made. The compiler, reports, forecasts and `smc explain` read [`super::PROCEDURES`].
 
 use super::ranking::Ranking;
-use super::{AnyEstimator, AnyTest, Hypothesis, Interval, Invalid, Mean, PROCEDURES, Sequential};
+use super::{AnyEstimator, AnyTest, Bounded, Hypothesis, Interval, Invalid, PROCEDURES, Sequential};
 use std::fmt;
 
 /// A kind of query that can name procedures.
@@ -14,8 +14,12 @@ pub enum Serves {
     Probability,
     /// `estimate E(…)`.
     Expectation,
+    /// `estimate CVaR(…)`.
+    Tail,
     /// `estimate Q(…)`.
     Quantile,
+    /// `estimate P(…) for …`.
+    Curve,
     /// `rank`.
     Ranking,
 }
@@ -26,7 +30,9 @@ impl fmt::Display for Serves {
             Self::Check => "check P(…), check Q(…)",
             Self::Probability => "estimate P(…)",
             Self::Expectation => "estimate E(…)",
+            Self::Tail => "estimate CVaR(…)",
             Self::Quantile => "estimate Q(…)",
+            Self::Curve => "estimate P(…) for t in …",
             Self::Ranking => "rank moves of …",
         })
     }
@@ -131,6 +137,9 @@ pub struct Against {
     pub theta: f64,
 }
 
+/// An estimator of a metric with a range, of its largest share if there is one, from the values of its arguments.
+pub type MakeBounded = fn(Range, Option<f64>, &[f64]) -> Result<Bounded, Invalid>;
+
 /// How a procedure is made from the values of its arguments.
 #[derive(Clone, Copy, Debug)]
 pub enum Make {
@@ -138,13 +147,15 @@ pub enum Make {
     Test(fn(Against, &[f64]) -> Result<Sequential<AnyTest>, Invalid>),
     /// An estimator of a probability; the seed addresses what it draws for itself.
     Estimator(fn(&[f64], u64) -> Result<Sequential<AnyEstimator>, Invalid>),
-    /// An estimator of the mean of a metric with a range.
-    Mean(fn(Range, &[f64]) -> Result<Mean, Invalid>),
+    /// An estimator of the mean of a metric with a range, or of its largest share.
+    Mean(MakeBounded),
     /// Order statistics, or the band around the distribution function.
     Quantile {
         /// Whether it is the band, which holds all quantiles at once.
         band: bool,
     },
+    /// The band around the distribution function of a time.
+    Curve,
     /// Importance splitting.
     Splitting {
         /// Whether levels are found on the way (else by a pilot run, with as many paths at each).
@@ -167,6 +178,8 @@ pub struct Guess {
     pub theta: f64,
     /// The length of the range of the metric.
     pub range: f64,
+    /// The share of the largest values that count; 1 if all do.
+    pub tail: f64,
 }
 
 /// How many trials a procedure is likely to take, where that depends on the truth.

@@ -28,7 +28,7 @@ use super::sequential::any_rule;
 use super::spec::{
     ALPHA, Argument, BETA, DELTA, EPSILON, Forecast, Guess, Kind, Make, Serves, Spec, TEST_SCATTER,
 };
-use super::{Counts, Decision, Estimator, Interval, Mean, Statement, Test, Weights, mean};
+use super::{Bounded, Counts, Decision, Estimator, Interval, Mean, Statement, Test, Weights, mean};
 use crate::base::math;
 use crate::base::special::normal_quantile;
 
@@ -87,8 +87,10 @@ pub const PROCEDURES: &[&Spec] = &[
     &FIXED_EFFORT,
     &MEAN_OKAMOTO,
     &MEAN_FIXED,
+    &TAIL_FIXED,
     &QUANTILE_FIXED,
     &DKW,
+    &CURVE_FIXED,
     &BETTING,
     &ONE_CHALLENGER,
     &RANKING_OKAMOTO,
@@ -311,7 +313,7 @@ pub const MEAN_RUNNING: Spec = Spec {
     arguments: &[DELTA],
     summary: "time-uniform interval of the mean, error {delta}",
     guarantee: "an interval that holds at all numbers of trials at once",
-    make: Make::Mean(|(low, high), values| Mean::running(low, high, values[0])),
+    make: Make::Mean(|range, share, values| Bounded::running(range, share, values[0])),
     forecast: Some(Forecast {
         trials: |values, guess| {
             let gap = math::at_least((guess.mean - guess.theta).abs(), 1e-6 * guess.range);
@@ -327,7 +329,7 @@ pub const MEAN_WITHIN: Spec = Spec {
     arguments: &[EPSILON, DELTA],
     summary: "fewest trials for ± {epsilon}, error {delta}",
     guarantee: "the expectation in the interval of half width epsilon",
-    make: Make::Mean(|(low, high), values| Mean::within(low, high, values[0], values[1])),
+    make: Make::Mean(|range, share, values| Bounded::within(range, share, values[0], values[1])),
     forecast: Some(Forecast {
         trials: |values, guess| mean::until_narrow(guess.variance, guess.range, values[0], values[1]),
         scatter: (0.4, 2.0),
@@ -342,7 +344,9 @@ pub const MEAN_OKAMOTO: Spec = Spec {
     arguments: &[EPSILON, DELTA],
     summary: "Okamoto bound for ± {epsilon}, error {delta}",
     guarantee: "the expectation in the interval of half width epsilon, at a fixed size",
-    make: Make::Mean(|(low, high), values| Mean::planned(low, high, values[0], values[1])),
+    make: Make::Mean(|(low, high), _, values| {
+        Ok(Bounded::Mean(Mean::planned(low, high, values[0], values[1])?))
+    }),
     forecast: None,
     ..MEAN_RUNNING
 };
@@ -353,9 +357,49 @@ pub const MEAN_FIXED: Spec = Spec {
     arguments: &[Argument::trials(1_000_000_000_000), DELTA],
     summary: "{trials} trials, error {delta}",
     guarantee: "an interval at a number of trials fixed in advance",
-    make: Make::Mean(|(low, high), values| Mean::fixed(low, high, values[0] as u64, values[1])),
+    make: Make::Mean(|range, share, values| Bounded::fixed(range, share, values[0] as u64, values[1])),
     forecast: None,
     ..MEAN_RUNNING
+};
+
+/// The procedure of checks of the mean of the largest share, which nothing names.
+pub const TAIL_RUNNING: Spec = Spec {
+    reported: "tail_betting",
+    serves: Serves::Tail,
+    summary: "time-uniform interval of the mean of the largest values, error {delta}",
+    forecast: Some(Forecast {
+        trials: |values, guess| {
+            let gap = math::at_least((guess.mean - guess.theta).abs(), 1e-6 * guess.range);
+            tail_until_narrow(gap, values[0], guess)
+        },
+        scatter: TEST_SCATTER,
+    }),
+    ..MEAN_RUNNING
+};
+
+/// The default of estimates of it with a width, which nothing names.
+pub const TAIL_WITHIN: Spec = Spec {
+    name: "default",
+    arguments: &[EPSILON, DELTA],
+    summary: "fewest trials for ± {epsilon}, error {delta}",
+    guarantee: "the mean of the largest values in the interval of half width epsilon",
+    make: MEAN_WITHIN.make,
+    forecast: Some(Forecast {
+        trials: |values, guess| tail_until_narrow(values[0], values[1], guess),
+        scatter: (0.3, 3.0),
+    }),
+    ..TAIL_RUNNING
+};
+
+/// The procedure as estimates of it name it; the default without a width.
+pub const TAIL_FIXED: Spec = Spec {
+    name: "fixed",
+    arguments: MEAN_FIXED.arguments,
+    summary: "{trials} trials, error {delta}",
+    guarantee: "an interval that holds at this number of trials, and at all before",
+    make: MEAN_FIXED.make,
+    forecast: None,
+    ..TAIL_RUNNING
 };
 
 /// The procedure as estimates of quantiles name it; the default.
@@ -378,6 +422,16 @@ pub const DKW: Spec = Spec {
     summary: "{trials} trials, band around the distribution function, error {delta}",
     guarantee: "the band of Dvoretzky, Kiefer and Wolfowitz: all levels at once",
     make: Make::Quantile { band: true },
+    ..QUANTILE_FIXED
+};
+
+/// The procedure of curves; `within` gives the number of trials as well.
+pub const CURVE_FIXED: Spec = Spec {
+    name: "dkw",
+    reported: "dkw",
+    serves: Serves::Curve,
+    guarantee: "the band of Dvoretzky, Kiefer and Wolfowitz: the whole curve at once; the default",
+    make: Make::Curve,
     ..QUANTILE_FIXED
 };
 
@@ -427,6 +481,12 @@ pub(super) fn until_narrow(values: &[f64], guess: &Guess) -> f64 {
     let (epsilon, p) = (values[0], guess.share);
     let z = normal_quantile(1.0 - 0.5 * values[1]);
     1.15 * z * z * p * (1.0 - p) / (epsilon * epsilon) + 2.0 / epsilon
+}
+
+/// Trials until the interval of the mean of the largest share is narrow: that share of all values scatters, and each of them
+/// weighs so much more.
+fn tail_until_narrow(epsilon: f64, delta: f64, guess: &Guess) -> f64 {
+    mean::until_narrow(guess.variance / guess.tail, guess.range / guess.tail, epsilon, delta)
 }
 
 const fn whole(

@@ -1,6 +1,7 @@
 //! The mixture of bets against "the rival is at least e better than the leader".
 
 use crate::base::math;
+use crate::stats::bets::geometric;
 
 /// Number of bets in the mixture; the cost of a race hardly depends on it.
 pub(super) const BETS: usize = 12;
@@ -13,12 +14,7 @@ pub(super) const ROUNDING: f64 = 1e-14;
 
 /// The bets, in geometric steps.
 pub(super) fn bets() -> [f64; BETS] {
-    let mut bets = [0.0; BETS];
-    for (k, bet) in bets.iter_mut().enumerate() {
-        let part = k as f64 / (BETS - 1) as f64;
-        *bet = math::exp(math::ln(LEAST) + part * math::ln(MOST / LEAST));
-    }
-    bets
+    geometric(LEAST, MOST)
 }
 
 /// Gaps from which on bets are larger.

@@ -157,6 +157,6 @@ impl Each {
         }
         let (open, beaten) =
             (0..k).filter(|other| *other != arm).partition(|other| ends[*other].1 > ends[leader].0);
-        Choice { arm, gap: gap_of(arm), open, beaten, certified }
+        Choice { arm, gap: gap_of(arm), open, beaten, certified, excluded: Vec::new() }
     }
 }

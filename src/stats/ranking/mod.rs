@@ -6,16 +6,22 @@
 
 use std::cmp::Ordering;
 
+mod aim;
 mod bet;
 mod booleans;
 mod certified;
+mod constrained;
 mod each;
+mod front;
 mod gap;
 mod race;
 mod scores;
 
+pub use aim::Goal;
 pub use booleans::Booleans;
+pub use constrained::{Bound, Constrained};
 pub use each::{Each, size};
+pub use front::Front;
 pub use race::{Allocation, Race};
 pub use scores::Scores;
 
@@ -55,6 +61,8 @@ pub struct Choice {
     /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best. Of very many
     /// near the best not all are looked at.
     pub certified: Vec<usize>,
+    /// Arms that violate a constraint, jointly with error at most delta.
+    pub excluded: Vec<usize>,
 }
 
 /// Outcomes of many trials for each arm, and the evidence in their differences: over the trials that both have, or over

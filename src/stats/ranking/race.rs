@@ -286,6 +286,6 @@ impl<T: Table> Race<T> {
         let (table, leader) = (&mut self.table, self.leader);
         let is_beaten = |other: &usize| *other != arm && table.passes(*other, leader, jointly).0;
         let beaten = (0..self.arms).filter(is_beaten).collect();
-        Choice { arm, gap, open, beaten, certified }
+        Choice { arm, gap, open, beaten, certified, excluded: Vec::new() }
     }
 }

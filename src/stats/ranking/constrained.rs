@@ -1,0 +1,247 @@
+//! The best of those arms that satisfy constraints, such as P(b) >= 0.9.
+//!
+//! Half of the error goes to the constraints: each of them has a confidence sequence for each arm, and all of them hold
+//! jointly, so that no arm is taken for one that satisfies or violates a constraint although it does not. The other half goes
+//! to the score, which is compared as in a race ([`super::Race`]): if a* is the best of those that satisfy the constraints,
+//! then choosing an arm that is more than epsilon worse needs that the bets on the difference of the two reach
+//! (k - 1) / (delta / 2), and there are k - 1 such arms.
+//!
+//! ```text
+//!            score        constraint: at least .9
+//! arm a      .80          [.95, .99]   satisfied: chosen, as c is less than epsilon better
+//! arm b      .95          [.70, .85]   violated: excluded, however good
+//! arm c      .79          [.85, .95]   nobody knows yet, and it does not matter
+//! ```
+
+use super::aim::{Aim, Goal};
+use super::{Choice, Share};
+use crate::base::math;
+use crate::stats::Running;
+use crate::stats::invalid::{Invalid, probability, range};
+
+/// What each arm has to satisfy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// What is bounded.
+    pub goal: Goal,
+    /// Whether it has to be at least the threshold, rather than at most.
+    pub at_least: bool,
+    /// The threshold.
+    pub threshold: f64,
+}
+
+/// Arms with a score and constraints.
+#[derive(Clone, Debug)]
+pub struct Constrained {
+    aim: Aim,
+    bounds: Vec<Bound>,
+    /// The numbers of each constraint, arm by arm.
+    sides: Vec<Vec<Running>>,
+    /// Whether an arm satisfies all constraints, or violates one; `None` where that is not known.
+    feasible: Vec<Option<bool>>,
+    /// Arms that are worse than one that satisfies the constraints.
+    dropped: Vec<bool>,
+    threshold: f64,
+    word: u64,
+    deviations: Vec<f64>,
+    scale: f64,
+    leader: usize,
+    pending: Vec<Share>,
+    finished: bool,
+}
+
+impl Constrained {
+    /// The score of each arm, to within `epsilon` in its unit, and the constraints; all but for probability `delta`. Each
+    /// constraint belongs to a column of scores that is fed beside the first.
+    pub fn new(
+        goal: Goal,
+        bounds: Vec<Bound>,
+        (epsilon, delta): (f64, f64),
+        word: u64,
+        deviations: Vec<f64>,
+    ) -> Result<Self, Invalid> {
+        let arms = deviations.len();
+        range("options", arms as f64, 1.0, 4096.0)?;
+        probability("delta", delta)?;
+        let half = 0.5 * delta;
+        let each = half / (arms * bounds.len()) as f64;
+        let side = |bound: &Bound| {
+            // An interval of a number has half of its error on either side, and only one side can mislead.
+            let error = if bound.goal == Goal::Probability { each } else { 2.0 * each };
+            Ok(vec![bound.goal.running(error)?; arms])
+        };
+        let sides = bounds.iter().map(side).collect::<Result<_, Invalid>>()?;
+        let (low, high) = goal.range();
+        let rivals = math::at_least(arms as f64 - 1.0, 1.0);
+        let first = |arm| Share { arm, from: 0, to: word };
+        Ok(Self {
+            aim: Aim::new(goal, arms, epsilon, half)?,
+            bounds,
+            sides,
+            feasible: vec![None; arms],
+            dropped: vec![false; arms],
+            threshold: math::ln(rivals / half) + 1e-9,
+            word,
+            scale: high - low,
+            leader: 0,
+            pending: (0..arms).map(first).collect(),
+            finished: false,
+            deviations,
+        })
+    }
+
+    /// The trials that are wanted now; none once finished.
+    pub fn next_round(&self) -> &[Share] {
+        &self.pending
+    }
+
+    /// Whether the choice is certified, or that there is none.
+    pub const fn finished(&self) -> bool {
+        self.finished
+    }
+
+    /// The numbers of a constraint, arm by arm, and whether an arm satisfies it.
+    pub fn side(&self, constraint: usize, arm: usize) -> (&Running, Option<bool>) {
+        let side = &self.sides[constraint][arm];
+        (side, self.bounds[constraint].holds(side))
+    }
+
+    /// Takes the next scores of an arm, in index order: those of its score, then those of each constraint.
+    pub fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
+        let place = self.pending.iter().position(|share| share.arm == arm);
+        let fed = columns.first().map_or(0, Vec::len) as u64;
+        let wanted = place.map_or(0, |at| self.pending[at].to - self.pending[at].from);
+        range("outcomes", fed as f64, 0.0, wanted as f64)?;
+        let (Some(place), [scores, others @ ..]) = (place, columns) else { return Ok(()) };
+        self.aim.push(arm, scores);
+        for (side, values) in self.sides.iter_mut().zip(others) {
+            for value in values {
+                side[arm].observe(*value);
+            }
+        }
+        self.pending[place].from += fed;
+        if self.pending[place].from == self.pending[place].to {
+            self.pending.remove(place);
+            self.learn(arm);
+            if self.pending.is_empty() {
+                self.decide();
+            }
+        }
+        Ok(())
+    }
+
+    /// What is known of the constraints of an arm; what was once known stays known.
+    fn learn(&mut self, arm: usize) {
+        if self.feasible[arm].is_some() {
+            return;
+        }
+        let holds: Vec<_> =
+            self.bounds.iter().zip(&self.sides).map(|(bound, side)| bound.holds(&side[arm])).collect();
+        if holds.contains(&Some(false)) {
+            self.feasible[arm] = Some(false);
+        } else if holds.iter().all(|one| *one == Some(true)) {
+            self.feasible[arm] = Some(true);
+        }
+    }
+
+    fn is_live(&self, arm: usize) -> bool {
+        self.feasible[arm] != Some(false) && !self.dropped[arm]
+    }
+
+    /// The arm that would be chosen: of those that seem to satisfy the constraints the one with the best score.
+    fn ahead(&self) -> Option<usize> {
+        let seems = |arm: usize| {
+            self.feasible[arm] == Some(true)
+                || self.bounds.iter().zip(&self.sides).all(|(bound, side)| bound.is_met(side[arm].estimate()))
+        };
+        let key = |arm: usize| (self.aim.trials(arm) > 0, seems(arm), self.feasible[arm] == Some(true));
+        (0..self.feasible.len()).filter(|arm| self.is_live(*arm)).max_by(|&a, &b| {
+            let (one, other) = (key(a), key(b));
+            let by_score = self.aim.estimate(a).total_cmp(&self.aim.estimate(b));
+            let by_deviation = self.deviations[b].total_cmp(&self.deviations[a]);
+            (one.0, one.1)
+                .cmp(&(other.0, other.1))
+                .then(by_score)
+                .then(one.2.cmp(&other.2))
+                .then(by_deviation)
+                .then(b.cmp(&a))
+        })
+    }
+
+    fn decide(&mut self) {
+        let Some(leader) = self.ahead() else {
+            self.finished = true;
+            return;
+        };
+        self.leader = leader;
+        let sure = self.feasible[leader] == Some(true);
+        let mut open: Vec<usize> = Vec::new();
+        for arm in (0..self.feasible.len()).filter(|arm| *arm != leader) {
+            if !self.is_live(arm) {
+                continue;
+            }
+            let (worse, close) = self.aim.passes(arm, leader, self.threshold);
+            if worse && sure {
+                self.dropped[arm] = true;
+            } else if !close {
+                open.push(arm);
+            }
+        }
+        self.finished = sure && open.is_empty();
+        if self.finished {
+            return;
+        }
+        open.push(leader);
+        open.sort_unstable();
+        let next = |arm: &usize| {
+            let from = self.aim.trials(*arm);
+            Share { arm: *arm, from, to: from + self.word }
+        };
+        self.pending = open.iter().map(next).collect();
+    }
+
+    /// The choice now, at the end or at a deadline. Where all arms are excluded, there is none.
+    pub fn choice(&mut self) -> Choice {
+        let arms = self.feasible.len();
+        if let Some(leader) = self.ahead() {
+            self.leader = leader;
+        }
+        let leader = self.leader;
+        let others: Vec<usize> = (0..arms).filter(|arm| *arm != leader && self.is_live(*arm)).collect();
+        let gap = if self.feasible[leader] != Some(true) {
+            1.0
+        } else if others.is_empty() {
+            0.0
+        } else {
+            math::at_most(self.aim.gap(&others, leader, self.threshold) / self.scale, 1.0)
+        };
+        let is_excluded = |arm: &usize| self.feasible[*arm] == Some(false);
+        Choice {
+            arm: leader,
+            gap,
+            open: others,
+            beaten: (0..arms).filter(|arm| self.dropped[*arm] && !is_excluded(arm)).collect(),
+            certified: if self.finished && !is_excluded(&leader) { vec![leader] } else { Vec::new() },
+            excluded: (0..arms).filter(is_excluded).collect(),
+        }
+    }
+}
+
+impl Bound {
+    fn is_met(self, value: f64) -> bool {
+        if self.at_least { value >= self.threshold } else { value <= self.threshold }
+    }
+
+    /// Whether it certainly holds, or is certainly violated.
+    fn holds(self, of: &Running) -> Option<bool> {
+        let interval = of.interval();
+        match (self.is_met(interval.low), self.is_met(interval.high)) {
+            (true, true) => Some(true),
+            (false, false) => Some(false),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
