@@ -26,6 +26,8 @@ fn main() -> Result<(), Diagnostics> {
                 Certified::Best { choice, gap } => {
                     format!("{choice} is at most {gap:.4} worse than the best")
                 }
+                Certified::Nothing => "no option satisfies the constraints".to_owned(),
+                Certified::Front { options } => format!("none dominates {}", options.join(", ")),
             };
             println!("    {claim}, error at most {}", certificate.error);
         }

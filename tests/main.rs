@@ -7,6 +7,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a test says what was poor or skipped")]
 
 mod ahead;
+mod aims;
 mod chance;
 mod circles;
 mod claims;

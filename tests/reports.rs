@@ -156,6 +156,7 @@ fn estimates() -> Vec<QueryResult> {
                 }),
                 quantiles: vec![],
                 empirical: vec![Step { value: -0.2, share: 0.5 }, Step { value: 1.4, share: 1.0 }],
+                curve: None,
                 band: Some(0.042_95),
             }),
             ..result(asked(4, Kind::Estimate, "estimate E(min<=10 s (gap(a))) in -0.5 m .. 20 m"))
@@ -212,6 +213,7 @@ fn compare() -> QueryResult {
 
 fn rank() -> QueryResult {
     let option = |label: &str, value, counts, status| RankedOption {
+        also: Vec::new(),
         label: label.into(),
         under: Vec::new(),
         settings: Vec::new(),
@@ -229,6 +231,8 @@ fn rank() -> QueryResult {
         consumed: consumed(counts(2_700, 500, 0)),
         stopped_by: Stop::Width,
         rank: Some(Ranking {
+            aim: "P(safe)".to_owned(),
+            is_empty: false,
             choice: Some("heading 15 deg".into()),
             means: None,
             gap: 0.017_23,

@@ -197,6 +197,8 @@ pub enum Ask {
         /// Under how many values of a parameter each option is asked for its score: the least counts. The options stand one
         /// after the other, each under all values.
         models: usize,
+        /// What is asked of the options besides: constraints, or further aims.
+        beside: Vec<Beside>,
     },
 }
 
@@ -220,10 +222,42 @@ pub struct RankOption {
     pub settings: Vec<(String, String)>,
     /// Its world, and the column of its score there.
     pub target: Target,
+    /// The columns of what is asked besides.
+    pub beside: Vec<usize>,
     /// The declaration of moves and its option that is followed, if any.
     pub advice: Option<(usize, usize)>,
     /// Of options that all carry the certificate, the one with the least number is chosen.
     pub deviation: f64,
+}
+
+/// What is asked of the options of a ranking besides their score.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beside {
+    /// As one would say it: `P(together)`.
+    pub said: String,
+    /// Which number of the distribution.
+    pub kind: MeasureKind,
+    /// What for.
+    pub role: Role,
+}
+
+/// The role of what is asked besides a score.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Role {
+    /// An option has to satisfy it.
+    Constraint {
+        /// Whether it has to be at least the threshold, rather than at most.
+        at_least: bool,
+        /// The threshold, SI.
+        threshold: f64,
+        /// `>= 0.9`, as written.
+        text: String,
+    },
+    /// More of it is better.
+    Aim {
+        /// The loss that does not matter.
+        epsilon: f64,
+    },
 }
 
 /// A number of the distribution of traces.
@@ -246,6 +280,8 @@ pub enum MeasureKind {
         range: (f64, f64),
         /// Its dimension.
         dimension: Dimension,
+        /// The level above which values count; `None` if all do.
+        level: Option<f64>,
     },
     /// Quantile of a metric.
     Quantile {
@@ -254,6 +290,19 @@ pub enum MeasureKind {
         /// Its dimension.
         dimension: Dimension,
     },
+    /// The probability of a formula as a function of its bound: the distribution function of a time.
+    Curve {
+        /// The bounds, ascending, SI.
+        times: Vec<f64>,
+        /// Whether the formula holds up to that time (`G`), rather than from then on (`F`).
+        falls: bool,
+        /// The dimension of the bounds.
+        dimension: Dimension,
+        /// The name of the bound.
+        name: String,
+        /// The probability at the last bound: `P(F<=30 s (user in exit))`.
+        last: String,
+    },
 }
 
 impl MeasureKind {
@@ -261,7 +310,15 @@ impl MeasureKind {
     pub const fn range(&self) -> Option<(f64, f64)> {
         match self {
             Self::Expectation { range, .. } => Some(*range),
-            Self::Probability | Self::Quantile { .. } => None,
+            Self::Probability | Self::Quantile { .. } | Self::Curve { .. } => None,
+        }
+    }
+
+    /// The share of the values that count for an expectation, unless all do.
+    pub fn share(&self) -> Option<f64> {
+        match self {
+            Self::Expectation { level, .. } => level.map(|level| 1.0 - level),
+            _ => None,
         }
     }
 }

@@ -327,7 +327,7 @@ impl<'a> Session<'a> {
     where
         'a: 'q,
     {
-        let Ask::Rank { options, measure, ranking, models } = &query.ask else {
+        let Ask::Rank { options, measure, ranking, models, beside } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let Make::Ranking(kind) = ranking.spec.make else { return Err(Fault::Unsuitable) };
@@ -338,6 +338,7 @@ impl<'a> Session<'a> {
             kind: measure.kind.clone(),
             rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
             models: *models,
+            beside,
         };
         let series = Series { seed: self.call.seed, branch: self.call.branch };
         RankSampling::new((place, query), setup, series, self.call.shows_evidence)

@@ -71,11 +71,14 @@ pub(super) fn under(
     }
     for item in properties.iter_mut().flat_map(|file| &mut file.items) {
         let PropertyItem::Query(query) = item else { continue };
-        let is_asked = match query.kind {
+        let is_asked = match &query.kind {
             QueryKind::Check { .. } => true,
             // With a procedure that is named there is a choice for each.
-            QueryKind::Rank { .. } => query.clauses.by.is_none(),
-            QueryKind::Estimate(_) | QueryKind::Compare { .. } => false,
+            QueryKind::Rank { subject, .. } => query.clauses.by.is_none() && subject.is_empty(),
+            QueryKind::Estimate(_)
+            | QueryKind::Compare { .. }
+            | QueryKind::Curve { .. }
+            | QueryKind::Pareto { .. } => false,
         };
         if is_asked && query.clauses.every.is_none() && !query.sets(&name) {
             query.clauses.every = Some(Every { name: ident(&name), values: None, span });

@@ -33,7 +33,8 @@ fn row(result: &QueryResult) -> Vec<Cell> {
     if let Some(of) = result.of.as_ref().filter(|_| !estimate.is_empty()) {
         estimate = format!("{of}: {estimate}");
     }
-    let choice = result.rank.as_ref().map(|ranking| ranking.choice.as_deref().unwrap_or("no choice"));
+    let choice = result.rank.as_ref().map(|ranking| phrase::ranked(result, ranking));
+    let choice = choice.map(|said| said.strip_prefix("choose ").map(str::to_owned).unwrap_or(said));
     vec![
         Cell::left(word).paint(paint),
         Cell::left(asked).paint(Paint::Strong),

@@ -27,8 +27,8 @@ const COLUMNS: [Column; 27] = [
     ("estimate", |row| number(row.value.estimate)),
     ("low", |row| number(row.value.low)),
     ("high", |row| number(row.value.high)),
-    ("unit", |row| row.result.unit.clone()),
-    ("of", |row| row.result.of.clone().unwrap_or_default()),
+    ("unit", |row| row.unit.unwrap_or(&row.result.unit).to_owned()),
+    ("of", |row| row.of.unwrap_or_else(|| row.result.of.as_deref().unwrap_or_default()).to_owned()),
     ("interval", |row| row.result.interval.clone()),
     ("gap", |row| row.of_whole(|result| result.rank.as_ref().map_or(String::new(), |rank| number(rank.gap)))),
     ("trials", |row| row.counts.trials.to_string()),
@@ -91,7 +91,7 @@ fn add(all: &mut Vec<String>, names: impl Iterator<Item = String>) {
 #[derive(Clone, Copy)]
 struct Row<'a> {
     result: &'a QueryResult,
-    /// `result`, `option`, `under`, `first`, `second` or `difference`.
+    /// `result`, `option`, `beside`, `point`, `under`, `first`, `second` or `difference`.
     kind: &'static str,
     label: &'a str,
     status: &'static str,
@@ -99,6 +99,11 @@ struct Row<'a> {
     counts: Counts,
     /// Settings beside those of the result.
     own: &'a [(String, String)],
+    /// What it is a number of, and its unit, where that is not what the result is of.
+    of: Option<&'a str>,
+    unit: Option<&'a str>,
+    /// The bound of a point of a curve.
+    at: Option<f64>,
     seed: u64,
 }
 
@@ -113,6 +118,9 @@ fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
         value: Interval { estimate, low: result.low, high: result.high },
         counts: result.consumed.counts,
         own: &[],
+        of: None,
+        unit: None,
+        at: None,
         seed,
     };
     let mut rows = vec![whole];
@@ -127,9 +135,31 @@ fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
             Row { kind, label, status: "", value: *value, counts: *counts, ..whole }
         }));
     }
-    rows.extend(result.rank.iter().flat_map(|ranking| &ranking.options).map(|option| {
-        let RankedOption { label, settings: own, value, counts, status, .. } = option;
-        Row { kind: "option", label, status: status.name(), value: *value, counts: *counts, own, ..whole }
+    for option in result.rank.iter().flat_map(|ranking| &ranking.options) {
+        let RankedOption { label, settings: own, value, counts, status, also, .. } = option;
+        let row = Row {
+            kind: "option",
+            label,
+            status: status.name(),
+            value: *value,
+            counts: *counts,
+            own,
+            ..whole
+        };
+        rows.push(row);
+        rows.extend(also.iter().map(|also| {
+            let status = also.holds.map_or("", |holds| if holds { "satisfied" } else { "violated" });
+            let (of, unit) = (Some(also.what.as_str()), Some(also.unit.as_str()));
+            Row { kind: "beside", status, value: also.value, of, unit, ..row }
+        }));
+    }
+    let curve = result.distribution.as_ref().and_then(|found| found.curve.as_ref());
+    rows.extend(curve.iter().flat_map(|curve| &curve.points).map(|point| Row {
+        kind: "point",
+        value: point.value,
+        of: Some(&result.asked.text),
+        at: Some(point.at),
+        ..whole
     }));
     rows.extend(result.every.iter().flat_map(|every| &every.parts).map(|part| {
         let best = part.best.as_ref().map_or("", |(option, _)| option.as_str());
@@ -149,11 +179,15 @@ fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
 impl Row<'_> {
     /// The columns of the settings and what is in them.
     fn settings(&self) -> impl Iterator<Item = (String, String)> {
-        self.result.asked.settings.iter().chain(self.own).map(|(name, text)| match setting::parts(text) {
+        let settings = self.result.asked.settings.iter().chain(self.own);
+        let settings = settings.map(|(name, text)| match setting::parts(text) {
             (Some(value), "") => (name.clone(), value.to_string()),
             (Some(value), unit) => (format!("{name} ({unit})"), value.to_string()),
             (None, text) => (name.clone(), text.to_owned()),
-        })
+        });
+        let curve = self.result.distribution.as_ref().and_then(|found| found.curve.as_ref());
+        let bound = self.at.zip(curve);
+        settings.chain(bound.map(|(at, curve)| (format!("{} ({})", curve.name, curve.unit), number(at))))
     }
 
     /// What only the row of a whole result has.

@@ -4,11 +4,12 @@
 //! lies beyond the horizon, in whole or by an end of its interval, says so by `"censored": true`. Everything
 //! but `elapsed_s` is a function of input, seed and version.
 
+use super::phrase::front;
 use super::setting;
 use crate::base::random;
 use crate::engine::outcome::{
-    CallResult, Comparison, Counts, Distribution, Every, Evidence, Finding, Interval, Method, QueryResult,
-    Ranking, Shows, Side, Snapshot, Standing, UnderOne, Verdict, Witness,
+    Also, CallResult, Comparison, Counts, CurvePoint, Distribution, Every, Evidence, Finding, Interval, Kind,
+    Method, QueryResult, Ranking, Shows, Side, Snapshot, Standing, UnderOne, Verdict, Witness,
 };
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -130,8 +131,15 @@ pub(super) fn result(result: &QueryResult) -> Value {
         put("second", side(second));
         put("difference", side(difference));
     }
-    if let Some(Ranking { choice, means, gap, tied, options }) = &result.rank {
+    if let Some(ranking @ Ranking { choice, means, gap, tied, aim, options, is_empty }) = &result.rank {
         put("choice", json!(choice));
+        if result.asked.kind == Kind::Pareto {
+            put("aim", json!(aim));
+            put("front", front(ranking).collect());
+        }
+        if *is_empty {
+            put("none", json!(true));
+        }
         if let Some(means) = means {
             put("means", json!(means));
         }
@@ -142,6 +150,9 @@ pub(super) fn result(result: &QueryResult) -> Value {
             object.insert("status".into(), json!(option.status.name()));
             if !option.under.is_empty() {
                 object.insert("under".into(), option.under.iter().map(side).collect());
+            }
+            if !option.also.is_empty() {
+                object.insert("also".into(), option.also.iter().map(also).collect());
             }
             if !option.settings.is_empty() {
                 object.insert("settings".into(), setting::object(&option.settings));
@@ -200,6 +211,15 @@ fn numbered(key: &str, label: &str, value: &Interval, trials: &Counts) -> Map<St
     object.extend(interval(value));
     object.extend(counts(trials));
     object
+}
+
+fn also(also: &Also) -> Value {
+    let mut object = Map::new();
+    object.insert("what".into(), json!(also.what));
+    object.extend(interval(&also.value));
+    object.insert("unit".into(), json!(also.unit));
+    object.insert("holds".into(), json!(also.holds));
+    Value::Object(object)
 }
 
 fn every(every: &Every) -> Value {
@@ -301,5 +321,16 @@ fn distribution(found: &Distribution) -> Value {
         .iter()
         .map(|step| json!({ "value": number(step.value), "share": number(step.share) }))
         .collect();
-    json!({ "histogram": histogram, "quantiles": quantiles, "empirical": empirical, "band": found.band })
+    let mut object =
+        json!({ "histogram": histogram, "quantiles": quantiles, "empirical": empirical, "band": found.band });
+    if let (Some(curve), Some(fields)) = (&found.curve, object.as_object_mut()) {
+        let point = |point: &CurvePoint| {
+            let mut object = Map::from_iter([("at".to_owned(), number(point.at))]);
+            object.extend(interval(&point.value));
+            Value::Object(object)
+        };
+        let points: Vec<Value> = curve.points.iter().map(point).collect();
+        fields.insert("curve".into(), json!({ "name": curve.name, "unit": curve.unit, "points": points }));
+    }
+    object
 }

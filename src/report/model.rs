@@ -422,7 +422,9 @@ fn procedure(ask: &Ask) -> String {
         Ask::Estimate { measure, estimator, .. } => {
             let what = match measure.kind {
                 MeasureKind::Probability => "probability",
+                MeasureKind::Expectation { level: Some(_), .. } => "mean of the largest values",
                 MeasureKind::Expectation { .. } => "expectation",
+                MeasureKind::Curve { .. } => "curve",
                 MeasureKind::Quantile { .. } => "quantile",
             };
             format!("{what}: {}", summary(estimator))

@@ -42,9 +42,9 @@ impl Paint {
 impl From<Status> for Paint {
     fn from(status: Status) -> Self {
         match status {
-            Status::Chosen => Self::Good,
+            Status::Chosen | Status::Front => Self::Good,
             Status::Tied => Self::Neutral,
-            Status::Beaten => Self::Faint,
+            Status::Beaten | Status::Excluded => Self::Faint,
             Status::Open => Self::Caution,
         }
     }

@@ -1,7 +1,7 @@
 //! Phrases about a result that several formats share.
 
 use super::number::plain;
-use crate::engine::outcome::{ModelError, QueryResult};
+use crate::engine::outcome::{Kind, ModelError, QueryResult, Ranking, Status};
 
 /// A query on one line, as written.
 pub(super) fn one_line(query: &str) -> String {
@@ -25,6 +25,26 @@ pub(super) fn endless(result: &QueryResult) -> &'static str {
     let time = result.censored.is_some()
         || ["time_until", "leg_"].iter().any(|word| result.asked.text.contains(word));
     if time { "beyond the horizon" } else { "infinite" }
+}
+
+/// The answer of a ranking in a few words.
+pub(super) fn ranked(result: &QueryResult, ranking: &Ranking) -> String {
+    if ranking.is_empty {
+        return "no option satisfies the constraints".to_owned();
+    }
+    if result.asked.kind == Kind::Pareto {
+        return match front(ranking).collect::<Vec<_>>().as_slice() {
+            [] => "no option is decided yet".to_owned(),
+            names => names.join("; "),
+        };
+    }
+    ranking.choice.as_ref().map_or_else(|| "no choice".to_owned(), |choice| format!("choose {choice}"))
+}
+
+/// The options that none dominates.
+pub(super) fn front(ranking: &Ranking) -> impl Iterator<Item = &str> {
+    let front = ranking.options.iter().filter(|option| option.status == Status::Front);
+    front.map(|option| option.label.as_str())
 }
 
 /// The certified statement with the horizon it is conditional on; empty where nothing is certified.

@@ -63,7 +63,7 @@ const fn within(word: &'static str) -> Keyword {
 }
 
 /// The keywords; of those that begin the items of a part hints name them in this order.
-pub const KEYWORDS: [Keyword; 82] = [
+pub const KEYWORDS: [Keyword; 84] = [
     starting("scenario", &[Scenario], Declares::Nothing),
     starting("horizon", &[Scenario], Declares::Nothing),
     starting("step", &[Scenario], Declares::Nothing),
@@ -92,6 +92,7 @@ pub const KEYWORDS: [Keyword; 82] = [
     starting("estimate", &[Properties], Declares::Nothing),
     starting("compare", &[Properties], Declares::Nothing),
     starting("rank", &[Properties], Declares::Nothing),
+    starting("pareto", &[Properties], Declares::Nothing),
     starting("wall", &[Scene], Declares::Thing),
     starting("obstacle", &[Scene], Declares::Thing),
     starting("region", &[Scene], Declares::Thing),
@@ -118,6 +119,7 @@ pub const KEYWORDS: [Keyword; 82] = [
     continuing("of"),
     continuing("preset"),
     continuing("radius"),
+    continuing("subject"),
     continuing("then"),
     continuing("to"),
     continuing("under"),
@@ -151,7 +153,12 @@ pub const KEYWORDS: [Keyword; 82] = [
 /// Words that are operators in property files, and no names.
 pub const OPERATORS: [&str; 8] = ["forall", "exists", "F", "G", "X", "U", "W", "R"];
 /// The measures of queries, the folds over windows and sets, and the truth values.
-const OTHERS: [&str; 9] = ["P", "E", "Q", "min", "max", "sum", "mean", "true", "false"];
+const OTHERS: [&str; 10] = ["P", "E", "Q", "CVaR", "min", "max", "sum", "mean", "true", "false"];
+
+/// Whether a word is a measure of a query.
+pub fn is_measure(word: &str) -> bool {
+    OTHERS[..4].contains(&word)
+}
 
 /// Whether a word is an operator over time in property files.
 pub fn is_temporal(word: &str) -> bool {
@@ -174,10 +181,10 @@ pub fn begins(word: &str, next: &str) -> bool {
     let is_name =
         next.starts_with(|c: char| c.is_alphabetic() || c == '_') && !matches!(next, "in" | "U" | "W" | "R");
     match word {
-        "check" | "estimate" | "compare" => matches!(next, "P" | "E" | "Q"),
+        "check" | "estimate" | "compare" => is_measure(next),
         "scene" => next == "{",
         "scenario" | "import" => next.starts_with('"'),
-        "moves" | "paths" | "rank" | "family" | "periodic" => is_name,
+        "moves" | "paths" | "rank" | "pareto" | "family" | "periodic" => is_name,
         _ => is_name && keyword(word).is_some_and(|keyword| keyword.declares != Declares::Nothing),
     }
 }

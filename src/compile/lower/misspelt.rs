@@ -10,6 +10,7 @@ use crate::compile::lower::{
 use crate::model::BuiltIn;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::codes::Code;
+use crate::syntax::keywords;
 use crate::syntax::parse::{foreign_word, time_meant, unit_meant};
 use crate::syntax::source::Span;
 
@@ -55,7 +56,7 @@ pub(crate) fn misread_comparison<T>(
     locals: &Locals,
 ) -> Option<Lowered<T>> {
     if let ExprKind::Call { function, .. } = &left.kind
-        && matches!(function.name.as_str(), "P" | "E" | "Q")
+        && keywords::is_measure(&function.name)
         && !is_known(context, &function.name, locals)
     {
         let title = format!("`{}` is allowed only in queries, not in formulas", function.name);

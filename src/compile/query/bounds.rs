@@ -47,10 +47,13 @@ pub(crate) fn width(
     widest: f64,
 ) -> Lowered<f64> {
     let (range, ranged, dimension) = match sketch {
-        Sketch { what: What::Probability, .. } => (1.0, None, Dimension::NONE),
-        Sketch { what: What::Expectation, range: Some((range, at)), dimension: Some(dimension), .. } => {
-            (range.1 - range.0, Some(at), dimension)
-        }
+        Sketch { what: What::Probability | What::Curve, .. } => (1.0, None, Dimension::NONE),
+        Sketch {
+            what: What::Expectation | What::Tail,
+            range: Some((range, at)),
+            dimension: Some(dimension),
+            ..
+        } => (range.1 - range.0, Some(at), dimension),
         // Without a range there is nothing to compare the width with.
         _ if epsilon > 0.0 || sketch.what == What::Quantile => return Ok(epsilon),
         _ => {

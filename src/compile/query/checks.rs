@@ -2,16 +2,17 @@
 
 use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, symbols::ScopeId};
 use crate::compile::query::{
-    bindings, clauses,
+    aims, bindings, clauses,
     compiler::Compiler,
     families::Allowance,
     measures::{self, Observed, Sketch, What},
     methods::{self, DEFAULT_ALPHA, DEFAULT_DELTA, Theta},
 };
-use crate::compile::study::{Ask, Measure, MeasureKind, Target};
-use crate::stats::procedures::MEAN_RUNNING;
+use crate::compile::study::{Ask, Column, Measure, MeasureKind, Target};
+use crate::stats::procedures::{MEAN_RUNNING, TAIL_RUNNING};
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
 use crate::syntax::diagnostic::{About, Diagnostic};
+use crate::syntax::source::Span;
 
 /// A check: its claim, threshold and test.
 pub(crate) fn check(
@@ -33,11 +34,12 @@ pub(crate) fn check(
     let confidence = methods::delta(context, clauses, &locals);
     let width = methods::no_width(context, clauses, sketch.what);
     let test = match (sketch.what, &clauses.by) {
-        (What::Expectation, None) => {
-            confidence.map(|stated| MEAN_RUNNING.with([allowance.claim_error(stated, DEFAULT_ALPHA)]))
+        (What::Expectation | What::Tail, None) => {
+            let spec = if sketch.what == What::Tail { &TAIL_RUNNING } else { &MEAN_RUNNING };
+            confidence.map(|stated| spec.with([allowance.claim_error(stated, DEFAULT_ALPHA)]))
         }
-        (What::Expectation, Some(method)) => {
-            let said = "a check of an expectation has only one procedure, without `by`";
+        (What::Expectation | What::Tail, Some(method)) => {
+            let said = "a check of an expectation or a tail has only one procedure, without `by`";
             context.report(error!(E0603, method.span, "{said}"))
         }
         (What::Quantile, _) => {
@@ -48,7 +50,7 @@ pub(crate) fn check(
             let theta = Theta { value: sketch.level, at: level, noun: "level" };
             methods::test(context, clauses, theta, allowance, &locals)
         }
-        (What::Probability, _) => {
+        (What::Probability | What::Curve, _) => {
             let value = bound.ok().map(|bound| bound.value);
             let theta = Theta { value, at: threshold.span, noun: "threshold" };
             methods::test(context, clauses, theta, allowance, &locals)
@@ -58,24 +60,47 @@ pub(crate) fn check(
     let (bound, test) = (bound?, test?);
     // Where a confidence is stated, or comes from a family, it is also that of the interval.
     let beside = allowance.claim_error(confidence?, DEFAULT_DELTA);
+    let context = &mut compiler.sites[site].context;
+    let Claim { column, kind, at_least, or_equal, threshold, unbounded } =
+        claim(context, observed?, relation, (bound, threshold.span))?;
+    let column = compiler.column(site, column);
+    let measure = Measure { target: Target { world: site, column }, kind };
+    Ok((Ask::Check { measure, at_least, or_equal, threshold, test, beside }, unbounded))
+}
+
+/// That a measure is on one side of a threshold, as it is decided.
+pub(crate) struct Claim {
+    pub(crate) column: Column,
+    pub(crate) kind: MeasureKind,
+    pub(crate) at_least: bool,
+    or_equal: bool,
+    pub(crate) threshold: f64,
+    unbounded: bool,
+}
+
+/// How a comparison of a measure is decided: that of a quantile as one of a probability.
+pub(crate) fn claim(
+    context: &mut Context<'_>,
+    observed: Observed,
+    relation: BinaryOp,
+    (bound, at): (Number, Span),
+) -> Lowered<Claim> {
     let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
     let or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
-    let Observed { column, kind, unbounded } = observed?;
-    let (column, kind, theta) = match kind {
+    let Observed { column, kind, unbounded } = observed;
+    let (column, kind, threshold) = match kind {
         // A quantile is at most x exactly if P(metric <= x) is at least its level. It is below x if
         // P(metric < x) is above its level, and not if that is below. So strictness goes with the side:
         // `<= x` and `> x` are settled by P(metric <= x), `< x` and `>= x` by P(metric < x).
         MeasureKind::Quantile { level, .. } => {
-            let limit = (bound.value, threshold.span);
+            let limit = (bound.value, at);
             let below = measures::below(context, &column, at_least != or_equal, limit, bound.dimension)?;
             at_least = !at_least;
             (below, MeasureKind::Probability, level)
         }
         kind => (column, kind, bound.value),
     };
-    let column = compiler.column(site, column);
-    let measure = Measure { target: Target { world: site, column }, kind };
-    Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test, beside }, unbounded))
+    Ok(Claim { column, kind, at_least, or_equal, threshold, unbounded })
 }
 
 /// A comparison: its sides, width and error; and the world of the first side.
@@ -144,7 +169,7 @@ pub(crate) fn compare<'a>(
 
 /// The threshold of a measure: a number in its unit, between 0 and 1 if it is a probability and within the range
 /// of an expectation.
-fn bound_of(
+pub(crate) fn bound_of(
     context: &mut Context<'_>,
     relation: BinaryOp,
     threshold: &Expr,
@@ -159,12 +184,7 @@ fn bound_of(
             format!("write a percentage with its sign: `{theta} %`")
         } else {
             let near = if theta <= 0.0 { 0.001 } else { 0.999 };
-            let sign = match relation {
-                BinaryOp::Less => "<",
-                BinaryOp::AtMost => "<=",
-                BinaryOp::Greater => ">",
-                _ => ">=",
-            };
+            let sign = aims::sign(relation);
             format!(
                 "no number of trials can show that an event is certain or impossible; write `{sign} {near}`"
             )
@@ -190,7 +210,7 @@ pub(crate) fn unlike(
 ) -> Diagnostic {
     let side = |kind: &MeasureKind, settings: &[(String, String)]| {
         let range = match kind {
-            MeasureKind::Expectation { range, dimension } => {
+            MeasureKind::Expectation { range, dimension, .. } => {
                 let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
                 format!("{}{unit} .. {}{unit}", range.0, range.1)
             }

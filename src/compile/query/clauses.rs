@@ -90,7 +90,7 @@ fn ranking_by(
 }
 
 /// How much worse than the best a choice may be.
-fn loss(
+pub(crate) fn loss(
     context: &mut Context<'_>,
     width: Option<(f64, Span)>,
     sketch: Sketch,

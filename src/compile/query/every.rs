@@ -52,6 +52,13 @@ fn values_of(context: &mut Context<'_>, query: &ast::Query, every: &Every) -> Lo
             .report(error!(E0608, method.span, "a ranking under every value has its own procedure";
             hint: "leave `by {}` out", method.name.name));
     }
+    if let QueryKind::Rank { subject, .. } = &query.kind
+        && let Some(first) = subject.first()
+    {
+        return context
+            .report(error!(E0608, first.measure.span, "a ranking under every value has no constraints";
+            hint: "ask one ranking for each value: `under {name} = …`"));
+    }
     if let QueryKind::Rank { of, .. } = &query.kind
         && of.values.iter().any(|(ranked, _)| ranked.name == *name)
     {

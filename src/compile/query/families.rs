@@ -38,7 +38,11 @@ pub(crate) fn members(files: &[PropertyFile], points: usize) -> usize {
     let queries = files.iter().filter(named).flat_map(|file| &file.items).map(|item| match item {
         PropertyItem::Query(query) => match &query.kind {
             QueryKind::Estimate(measures) => measures.len(),
-            QueryKind::Check { .. } | QueryKind::Compare { .. } | QueryKind::Rank { .. } => 1,
+            QueryKind::Check { .. }
+            | QueryKind::Compare { .. }
+            | QueryKind::Curve { .. }
+            | QueryKind::Rank { .. }
+            | QueryKind::Pareto { .. } => 1,
         },
         _ => 0,
     });

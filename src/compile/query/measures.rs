@@ -37,7 +37,16 @@ pub(crate) struct Observed {
 pub(crate) enum What {
     Probability,
     Expectation,
+    Tail,
     Quantile,
+    Curve,
+}
+
+impl What {
+    /// Whether it is a number of a metric with a range.
+    pub(crate) const fn has_range(self) -> bool {
+        matches!(self, Self::Expectation | Self::Tail)
+    }
 }
 
 /// The known properties of a measure that may have errors. The rest of its query is checked only against these.
@@ -186,7 +195,11 @@ fn inside_robustness<'e>(context: &Context<'_>, body: &'e Expr, scope: ScopeId) 
 }
 
 /// The source of a metric, before its use is known.
-fn metric_root(context: &mut Context<'_>, body: &Expr, scope: ScopeId) -> Lowered<(Root, Dimension, bool)> {
+pub(crate) fn metric_root(
+    context: &mut Context<'_>,
+    body: &Expr,
+    scope: ScopeId,
+) -> Lowered<(Root, Dimension, bool)> {
     let Some(formula) = inside_robustness(context, body, scope) else {
         let (term, dimension, unbounded) = metric(context, body, scope)?;
         return Ok((Root::Metric(term), dimension, unbounded));
@@ -270,12 +283,17 @@ pub(crate) fn measure(
             });
             (observed, Sketch::PROBABILITY)
         }
-        ast::MeasureKind::Expectation => expectation(context, measure, scope),
+        ast::MeasureKind::Expectation => expectation(context, measure, None, scope),
+        ast::MeasureKind::Tail(level) => {
+            let known = level_of(context, level, "a tail", scope);
+            let (observed, sketch) = expectation(context, measure, known.ok(), scope);
+            (known.and(observed), Sketch { what: What::Tail, ..sketch })
+        }
         ast::MeasureKind::Quantile(level) => quantile(context, measure, level, scope),
     };
     match &measure.range {
-        Some((low, _)) if !matches!(measure.kind, ast::MeasureKind::Expectation) => {
-            let error = error!(E0605, low.span, "only an expectation has a range");
+        Some((low, _)) if !sketch.what.has_range() => {
+            let error = error!(E0605, low.span, "only an expectation or a tail has a range");
             (context.report(error), sketch)
         }
         _ => (observed, sketch),
@@ -285,6 +303,7 @@ pub(crate) fn measure(
 fn expectation(
     context: &mut Context<'_>,
     measure: &ast::Measure,
+    level: Option<f64>,
     scope: ScopeId,
 ) -> (Lowered<Observed>, Sketch) {
     let metric = metric_root(context, &measure.body, scope);
@@ -296,8 +315,12 @@ fn expectation(
         None if metric.is_err() && is_refused_as_a_whole(context, &measure.body) => Err(Reported),
         None => {
             let unit = dimension.filter(|d| !d.is_none()).map_or_else(String::new, |d| format!(" {d}"));
-            let error = error!(E0605, measure.span, "an expectation needs the range of its metric";
-                        hint: "write the range of its values: `E(…) in 0{unit} .. 10{unit}`; values outside are clipped and counted");
+            let (noun, letter) = match measure.kind {
+                ast::MeasureKind::Tail(_) => ("a tail", "CVaR"),
+                _ => ("an expectation", "E"),
+            };
+            let error = error!(E0605, measure.span, "{noun} needs the range of its metric";
+                        hint: "write the range of its values: `{letter}(…) in 0{unit} .. 10{unit}`; values outside are clipped and counted");
             context.report(error)
         }
     };
@@ -310,7 +333,7 @@ fn expectation(
             Root::Robustness(node, _) => Root::Robustness(node, Sought::Clipped(range.0, range.1)),
             root => root,
         };
-        let kind = MeasureKind::Expectation { range, dimension };
+        let kind = MeasureKind::Expectation { range, dimension, level };
         Ok(Observed { column: Column { root, text }, kind, unbounded })
     });
     (observed, sketch)
@@ -361,6 +384,15 @@ fn is_refused_as_a_whole(context: &Context<'_>, body: &Expr) -> bool {
     context.sink.diagnostics.iter().any(|d| d.code == Code::E0305 && at(d) == Some(body.span))
 }
 
+/// A level between 0 and 1.
+fn level_of(context: &mut Context<'_>, level: &Expr, noun: &str, scope: ScopeId) -> Lowered<f64> {
+    let number = context.number_of(level, Dimension::NONE, &Locals::of(scope))?;
+    if number.value > 0.0 && number.value < 1.0 {
+        return Ok(number.value);
+    }
+    context.report(error!(E0601, level.span, "the level of {noun} must be between 0 and 1"))
+}
+
 fn quantile(
     context: &mut Context<'_>,
     measure: &ast::Measure,
@@ -376,13 +408,7 @@ fn quantile(
                     hint: "write `Q({number}, {metric})`");
         return (context.report(error), Sketch::of(What::Quantile, None));
     }
-    let number = context.number_of(level, Dimension::NONE, &Locals::of(scope)).and_then(|number| {
-        if number.value > 0.0 && number.value < 1.0 {
-            return Ok(number.value);
-        }
-        let said = "the level of a quantile must be between 0 and 1";
-        context.report(error!(E0601, level.span, "{said}"))
-    });
+    let number = level_of(context, level, "a quantile", scope);
     let metric = metric_root(context, &measure.body, scope);
     let dimension = dimension_of(context, &metric, &measure.body, scope);
     let sketch = Sketch { level: number.ok(), ..Sketch::of(What::Quantile, dimension) };

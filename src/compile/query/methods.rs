@@ -9,9 +9,12 @@ use crate::compile::query::{
     families::Allowance,
     measures::{self, Sketch, What},
 };
-use crate::stats::procedures::{EPROCESS, MEAN_FIXED, MEAN_WITHIN, PROBABILITY_WITHIN, QUANTILE_FIXED};
+use crate::stats::procedures::{
+    CURVE_FIXED, EPROCESS, MEAN_FIXED, MEAN_WITHIN, PROBABILITY_WITHIN, QUANTILE_FIXED, TAIL_FIXED,
+    TAIL_WITHIN,
+};
 use crate::stats::spec::{Kind, Make, Serves};
-use crate::stats::{Chosen, Spec, splitting};
+use crate::stats::{Chosen, Spec, okamoto, splitting};
 use crate::syntax::ast::{Clauses, Expr, Method};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -73,12 +76,21 @@ pub(crate) fn within(
     sketch: Sketch,
     locals: &Locals,
 ) -> Lowered<Option<f64>> {
-    let Some(expr) = &clauses.within else { return Ok(None) };
+    clauses.within.as_ref().map(|expr| positive(context, expr, sketch, locals)).transpose()
+}
+
+/// A width in the unit of a measure.
+pub(crate) fn positive(
+    context: &mut Context<'_>,
+    expr: &Expr,
+    sketch: Sketch,
+    locals: &Locals,
+) -> Lowered<f64> {
     let number = measures::number_in(context, expr, sketch, locals)?;
     if number.value <= 0.0 {
         return context.report(error!(E0604, expr.span, "`within` must be positive"));
     }
-    Ok(Some(number.value))
+    Ok(number.value)
 }
 
 /// The procedure that a method names.
@@ -108,7 +120,7 @@ pub(crate) fn procedure(
 pub(crate) fn no_width(context: &mut Context<'_>, clauses: &Clauses, what: What) -> Lowered<()> {
     let Some(within) = &clauses.within else { return Ok(()) };
     let error = error!(E0607, within.span, "a check has no `within`");
-    context.report(if what == What::Expectation {
+    context.report(if what.has_range() {
             error.hint("remove `within`: the check stops as soon as the interval of the mean is on one side of the threshold")
         } else {
             error.hint("remove `within`; for an indifference region write `by sprt(indifference = 0.01)`")
@@ -151,7 +163,9 @@ pub(crate) fn estimator(
     let serves = match sketch.what {
         What::Probability => Serves::Probability,
         What::Expectation => Serves::Expectation,
+        What::Tail => Serves::Tail,
         What::Quantile => Serves::Quantile,
+        What::Curve => Serves::Curve,
     };
     let misplaced = match &clauses.within {
         Some(expr) if serves == Serves::Quantile => context
@@ -189,7 +203,14 @@ fn default_estimator(
         (What::Probability, within) => PROBABILITY_WITHIN.with([within.unwrap_or(DEFAULT_EPSILON), delta]),
         (What::Expectation, Some(epsilon)) => MEAN_WITHIN.with([epsilon, delta]),
         (What::Expectation, None) => MEAN_FIXED.with([trials, delta]),
+        (What::Tail, Some(epsilon)) => TAIL_WITHIN.with([epsilon, delta]),
+        (What::Tail, None) => TAIL_FIXED.with([trials, delta]),
         (What::Quantile, _) => QUANTILE_FIXED.with([trials, delta]),
+        // The band is as wide as Okamoto's interval.
+        (What::Curve, within) => {
+            let size = within.map_or(trials, |epsilon| okamoto::size(epsilon, delta) as f64);
+            CURVE_FIXED.with([size, delta])
+        }
     })
 }
 

@@ -1,11 +1,13 @@
 //! The whole of a call: worlds and questions.
 
+pub(crate) mod aims;
 pub(crate) mod arguments;
 pub(crate) mod bindings;
 pub(crate) mod bounds;
 pub(crate) mod checks;
 pub(crate) mod clauses;
 pub(crate) mod compiler;
+pub(crate) mod curves;
 pub(crate) mod every;
 pub(crate) mod families;
 pub(crate) mod findings;
@@ -23,6 +25,7 @@ use crate::compile::context::{
 };
 use crate::compile::lower::{call, name, traffic};
 use crate::compile::people::kinds;
+use crate::compile::query::aims::Others;
 use crate::compile::query::families::Allowance;
 use crate::compile::study::{Ask, Query, Said, Study, World};
 use crate::compile::written;
@@ -259,6 +262,7 @@ impl<'a> Compiler<'a> {
         (family, claims): (Option<f64>, usize),
     ) -> Lowered<()> {
         let clauses = &query.clauses;
+        aims::one_width(&mut self.sites[site].context, query)?;
         let text = self.sites[site].context.text(query.span);
         // What a query sets itself takes the place of what a sweep sets.
         let swept = settings.iter().filter(|(name, _)| !query.sets(name));
@@ -277,8 +281,19 @@ impl<'a> Compiler<'a> {
                 let sides = [first.as_slice(), second];
                 (measure, None, checks::compare(self, site, measure, sides, clauses, family, scope)?)
             }
-            QueryKind::Rank { of, measure } => {
-                (measure, None, rankings::rank(self, site, of, measure, clauses, family, scope)?)
+            QueryKind::Curve { measure, name, values } => {
+                let (ask, unbounded) =
+                    curves::curve(self, site, (measure, name, values), clauses, family, scope)?;
+                (measure, None, (ask, unbounded, site))
+            }
+            QueryKind::Rank { of, measure, subject } => {
+                let others = Others::Subject(subject);
+                (measure, None, rankings::rank(self, site, of, (measure, others), clauses, family, scope)?)
+            }
+            QueryKind::Pareto { of, measures } => {
+                let Some((measure, others)) = measures.split_first() else { return Err(Reported) };
+                let others = Others::Aims(others);
+                (measure, None, rankings::rank(self, site, of, (measure, others), clauses, family, scope)?)
             }
         };
         let said = titles::said(&self.sites[site].context, measure, claim);
@@ -323,6 +338,9 @@ impl<'a> Compiler<'a> {
                 _ if measures.len() == 1 => text.clone(),
                 ast::MeasureKind::Quantile(level) => {
                     format!("estimate Q({}, {})", context.text(level.span), context.text(measure.body.span))
+                }
+                ast::MeasureKind::Tail(_) => {
+                    format!("estimate {}", titles::said(context, measure, None).measure)
                 }
                 _ => format!("estimate {}", context.text(measure.span)),
             };

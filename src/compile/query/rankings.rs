@@ -2,6 +2,7 @@
 
 use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, symbols::ScopeId};
 use crate::compile::query::{
+    aims::{self, Others},
     bindings,
     checks::unlike,
     clauses,
@@ -38,7 +39,7 @@ pub(crate) fn rank<'a>(
     compiler: &mut Compiler<'a>,
     site: usize,
     of: &'a Ranked,
-    measure: &ast::Measure,
+    (measure, others): (&ast::Measure, Others<'_>),
     clauses: &'a Clauses,
     family: Option<f64>,
     scope: ScopeId,
@@ -71,7 +72,7 @@ pub(crate) fn rank<'a>(
     };
     let context = &mut compiler.sites[site].context;
     let rankable = if sketch.what == What::Quantile {
-        let error = error!(E0607, measure.span, "`rank` accepts only `P(…)` and `E(…)`");
+        let error = error!(E0607, measure.span, "a ranking accepts only `P(…)`, `E(…)` and `CVaR(…)`");
         context.report(error)
     } else {
         Ok(())
@@ -80,8 +81,8 @@ pub(crate) fn rank<'a>(
     let known = if rankable.is_ok() { sketch } else { Sketch { dimension: None, ..sketch } };
     let allowance = Allowance { family, claims: 1 };
     let procedure = clauses::ranking(context, clauses, (known, measure.span), allowance, &locals);
-    if let (Ok(Make::Ranking(Ranking::Okamoto)), What::Expectation, Some(method)) =
-        (procedure.as_ref().map(|chosen| chosen.spec.make), sketch.what, &clauses.by)
+    if let (Ok(Make::Ranking(Ranking::Okamoto)), true, Some(method)) =
+        (procedure.as_ref().map(|chosen| chosen.spec.make), sketch.what.has_range(), &clauses.by)
     {
         let error = error!(E0607, method.span, "`okamoto` ranks only by `P(…)`";
                 hint: "remove `by okamoto`: the default procedure also ranks by `E(…)`, and needs fewer trials");
@@ -103,17 +104,25 @@ pub(crate) fn rank<'a>(
             return compiler.sites[site].context.report(error);
         }
     }
-    check_used(compiler, site, &of.values, &candidates, measure, scope)?;
+    let asked = aims::beside(compiler, (site, &worlds), (measure, &others), clauses, scope)?;
+    // A parameter may matter to a constraint alone.
+    if asked.is_empty() {
+        check_used(compiler, site, &of.values, &candidates, measure, scope)?;
+    }
     let world = first.target.world;
-    let options = each.into_iter().zip(candidates).map(|(measure, c)| RankOption {
+    let columns = |world: usize| asked.iter().map(|(_, columns)| columns[world]).collect();
+    let places: Vec<usize> = candidates.iter().map(at).collect();
+    let options = each.into_iter().zip(candidates).zip(places).map(|((measure, c), place)| RankOption {
         label: c.label,
         settings: c.settings,
         target: measure.target,
+        beside: columns(place),
         advice: c.advice,
         deviation: c.deviation,
     });
     let options = options.collect();
-    Ok((Ask::Rank { options, measure: first, ranking, models: 1 }, unbounded, world))
+    let beside = asked.iter().map(|(one, _)| one.clone()).collect();
+    Ok((Ask::Rank { options, measure: first, ranking, models: 1, beside }, unbounded, world))
 }
 
 /// The options of the moves of one agent, or all pairs of moves of two, in a world. Errors are those of `site`.

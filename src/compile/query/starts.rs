@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Words that start a query of the world of the call, unless it sets values of its own.
-const ASKING: [&str; 3] = ["check", "estimate", "rank"];
+const ASKING: [&str; 4] = ["check", "estimate", "rank", "pareto"];
 
 /// The starts of the worlds that are surely asked about.
 pub(crate) fn starts(compiler: &Compiler<'_>) -> Vec<Starts> {
@@ -40,14 +40,14 @@ fn asks_though_lost(compiler: &Compiler<'_>) -> bool {
     compiler.input.properties.iter().flat_map(|file| &file.broken).any(|item| {
         let has = |word: &str| item.words.iter().any(|own| own == word);
         let asks = item.words.first().is_some_and(|first| ASKING.contains(&first.as_str()));
-        asks && (!has("rank") || has("moves")) && !has("under")
+        asks && (!has("rank") && !has("pareto") || has("moves")) && !has("under")
     })
 }
 
 /// Notes which world a query asks about; a comparison, and a ranking of values, has some of its own.
 pub(crate) fn note_asked(compiler: &mut Compiler<'_>, query: &Query, world: usize) {
     let has_own = matches!(&query.kind, QueryKind::Compare { .. })
-        || matches!(&query.kind, QueryKind::Rank { of, .. } if !of.values.is_empty());
+        || matches!(&query.kind, QueryKind::Rank { of, .. } | QueryKind::Pareto { of, .. } if !of.values.is_empty());
     if !has_own {
         compiler.asked.push((query.span, world));
     }

@@ -10,20 +10,23 @@ pub(crate) fn said(context: &Context<'_>, measure: &Measure, bound: Option<(Bina
     let text = context.text(measure.span);
     let inner = inside(&text);
     let letter = match &measure.kind {
-        MeasureKind::Probability => 'P',
-        MeasureKind::Expectation => 'E',
-        MeasureKind::Quantile(_) => 'Q',
+        MeasureKind::Probability => "P",
+        MeasureKind::Expectation => "E",
+        MeasureKind::Quantile(_) => "Q",
+        MeasureKind::Tail(_) => "CVaR",
     };
     let (levels, metric) = apart(inner);
-    let event = bound.filter(|_| letter == 'Q').map(|(relation, bound)| Event {
+    let event = bound.filter(|_| letter == "Q").map(|(relation, bound)| Event {
         metric: metric.to_owned(),
         relation: if matches!(relation, BinaryOp::AtMost | BinaryOp::Greater) { "<=" } else { "<" },
         bound: context.text(bound.span),
     });
     let measure = match &measure.kind {
         // Of several levels this is one.
-        MeasureKind::Quantile(level) if at_depth_zero(levels, ',').next().is_some() => {
-            format!("Q({}, {metric})", context.text(level.span))
+        MeasureKind::Quantile(level) | MeasureKind::Tail(level)
+            if at_depth_zero(levels, ',').next().is_some() =>
+        {
+            format!("{letter}({}, {metric})", context.text(level.span))
         }
         _ => format!("{letter}({inner})"),
     };

@@ -95,6 +95,9 @@ impl Answers<'_> {
             {
                 result.censored = Some(prepared.program.scenario.clock.seconds(prepared.horizon));
             }
+            if let MeasureKind::Curve { last, .. } = &measure.kind {
+                result.of = Some(last.clone());
+            }
             if kind == Kind::Estimate {
                 let claim = match (result.censored, interval.low.is_infinite(), interval.high.is_infinite()) {
                     (Some(horizon), true, true) if interval.low > 0.0 => {
@@ -160,6 +163,16 @@ impl Answers<'_> {
         let cut = was_cut(prepared, measure.target.column, &entry.tally);
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = entry.procedure.distribution().filter(|_| known);
+        if let (Some(curve), Some(certificate)) =
+            (result.distribution.as_ref().and_then(|found| found.curve.as_ref()), result.certificate.as_ref())
+        {
+            let reach = words::number(words::at_most(curve.reach));
+            let error = words::error(certificate.error);
+            result.certifies = format!(
+                "{measured} within ± {reach} of the curve at all {} bounds at once, error at most {error}",
+                curve.points.len()
+            );
+        }
         let quantiles = result.distribution.iter_mut().flat_map(|found| &mut found.quantiles);
         quantiles.for_each(|one| one.value.low = one.value.low.max(least));
         Self::tell(&mut result, prepared, &entry.tally, measure.target.column);
@@ -171,7 +184,11 @@ impl Answers<'_> {
             _ => witness::extremes(&entry.tally),
         };
         let settings = &result.asked.settings;
-        result.witnesses = self.witnesses(&result, prepared, (measure.target.column, None), &picks, settings);
+        let unit = match &measure.kind {
+            MeasureKind::Curve { dimension, .. } => dimension.to_string(),
+            _ => result.unit.clone(),
+        };
+        result.witnesses = self.witnesses(&unit, prepared, (measure.target.column, None), &picks, settings);
         Ok(result)
     }
 }

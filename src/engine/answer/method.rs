@@ -1,10 +1,11 @@
 //! The name of a procedure and all its numbers, for reports: with them, the seed and the inputs a result can be had again.
 
 use crate::compile::methods::PLANNED_TRIALS;
-use crate::compile::study::{Ask, Measure, MeasureKind};
+use crate::compile::study::{Ask, Beside, Measure, MeasureKind, Role};
 use crate::engine::outcome::Method;
+use crate::engine::sampling::contest::is_by_intervals;
 use crate::engine::sampling::procedure::Procedure;
-use crate::stats::procedures::PROBABILITY_WITHIN;
+use crate::stats::procedures::{PROBABILITY_WITHIN, TAIL_RUNNING};
 use crate::stats::splitting;
 use crate::stats::{Chosen, Coverage};
 
@@ -14,8 +15,11 @@ type Numbers = Vec<(&'static str, f64)>;
 /// What a procedure knows of a measure: the range of a metric, the level of a quantile.
 fn ends(measure: &Measure) -> Numbers {
     match measure.kind {
-        MeasureKind::Probability => Vec::new(),
-        MeasureKind::Expectation { range: (low, high), .. } => vec![("low", low), ("high", high)],
+        MeasureKind::Probability | MeasureKind::Curve { .. } => Vec::new(),
+        MeasureKind::Expectation { range: (low, high), level, .. } => {
+            let level = level.map(|level| ("level", level));
+            level.into_iter().chain([("low", low), ("high", high)]).collect()
+        }
         MeasureKind::Quantile { level, .. } => vec![("level", level)],
     }
 }
@@ -53,14 +57,21 @@ pub(in crate::engine) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method 
             let numbers = vec![("delta", *delta), within.map_or(planned, |w| ("epsilon", w))];
             // The mean of the differences of two metrics, or the difference of two shares.
             let name = match first.kind {
+                MeasureKind::Expectation { level: Some(_), .. } => TAIL_RUNNING.reported,
                 MeasureKind::Expectation { .. } => "empirical_bernstein",
                 _ => "paired_betting",
             };
             (name, [numbers, ends(first)].concat())
         }
-        Ask::Rank { ranking, measure, models, .. } => {
+        Ask::Rank { ranking, measure, models, beside, .. } => {
             let word = vec![("word", crate::engine::sampling::rank::WORD as f64)];
-            let name = if *models > 1 { crate::engine::sampling::least::NAME } else { ranking.spec.reported };
+            let name = match beside.first() {
+                Some(Beside { role: Role::Constraint { .. }, .. }) => "constrained_betting",
+                Some(Beside { role: Role::Aim { .. }, .. }) => "pareto_betting",
+                None if *models > 1 => crate::engine::sampling::least::NAME,
+                None if is_by_intervals(&measure.kind) => TAIL_RUNNING.reported,
+                None => ranking.spec.reported,
+            };
             (name, [values(ranking), word, ends(measure)].concat())
         }
     };

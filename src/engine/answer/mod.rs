@@ -29,8 +29,12 @@ use crate::trials::cell::Item;
 const MAX_TRIALS: &str = "--max-trials";
 
 fn unit(measure: &Measure) -> String {
-    match measure.kind {
-        MeasureKind::Probability => String::new(),
+    unit_of(&measure.kind)
+}
+
+fn unit_of(kind: &MeasureKind) -> String {
+    match kind {
+        MeasureKind::Probability | MeasureKind::Curve { .. } => String::new(),
         MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => {
             dimension.to_string()
         }
@@ -138,7 +142,7 @@ impl Answers<'_> {
     /// The witnesses of a column of a world, in which perhaps somebody was advised.
     pub(in crate::engine) fn witnesses(
         &self,
-        result: &QueryResult,
+        unit: &str,
         prepared: &PreparedWorld,
         (column, advice): (usize, Option<(usize, usize)>),
         picks: &[(Shows, u64)],
@@ -146,7 +150,7 @@ impl Answers<'_> {
     ) -> Vec<Witness> {
         let calls = (self.call, self.budget);
         let picks = if self.call.explains { picks } else { &[] };
-        witness::find(prepared, column, advice, picks, calls, settings, &result.unit)
+        witness::find(prepared, column, advice, picks, calls, settings, unit)
     }
 
     /// Counts, and what they warn of.
@@ -262,7 +266,7 @@ fn was_cut(prepared: &PreparedWorld, column: usize, tally: &Tally) -> bool {
 /// What a number can be: between 0 and 1, or in the declared range.
 fn legal(ask: &Ask) -> (f64, f64) {
     let of = |measure: &Measure| match measure.kind {
-        MeasureKind::Probability => (0.0, 1.0),
+        MeasureKind::Probability | MeasureKind::Curve { .. } => (0.0, 1.0),
         MeasureKind::Expectation { range, .. } => range,
         MeasureKind::Quantile { .. } => (f64::NEG_INFINITY, f64::INFINITY),
     };

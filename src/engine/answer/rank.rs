@@ -1,10 +1,10 @@
 //! Results of rankings.
 
-use super::{Answers, First, Running, Sampling, Turn, unit, was_cut};
+use super::{Answers, First, Running, Sampling, Turn, unit, unit_of, was_cut};
 use super::{every, method, tables, words};
-use crate::compile::study::{Ask, MeasureKind, RankOption};
+use crate::compile::study::{Ask, Beside, Measure, MeasureKind, Query, RankOption, Role};
 use crate::engine::fault::Fault;
-use crate::engine::outcome::{Certificate, Certified, Evidence, Kind, QueryResult};
+use crate::engine::outcome::{Certificate, Certified, Evidence, Kind, QueryResult, Ranking, Status};
 use crate::engine::sampling::rank::{RankOutcome, RankSampling};
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::Forecast;
@@ -41,16 +41,55 @@ fn means(prepared: &PreparedWorld, advice: Option<(usize, usize)>) -> Option<Str
     is_stop.then(|| format!("waits {seconds} s, then takes its own way"))
 }
 
+/// `P(b) >= 0.9, E(c) <= 3 s`
+fn constraints(beside: &[Beside]) -> String {
+    let said = |one: &Beside| match &one.role {
+        Role::Constraint { text, .. } => Some(format!("{} {text}", one.said)),
+        Role::Aim { .. } => None,
+    };
+    beside.iter().filter_map(said).collect::<Vec<_>>().join(" and ")
+}
+
+/// The options of a front.
+fn labels(listed: &Ranking) -> impl Iterator<Item = &str> {
+    let front = listed.options.iter().filter(|option| option.status == Status::Front);
+    front.map(|option| option.label.as_str())
+}
+
+/// What a finished front certifies.
+fn front(
+    query: &Query,
+    (measure, epsilon): (&Measure, f64),
+    beside: &[Beside],
+    listed: &Ranking,
+    delta: f64,
+) -> String {
+    let mut aims = vec![format!("{} by {}", query.said.measure, words::quantity(epsilon, &unit(measure)))];
+    aims.extend(beside.iter().filter_map(|one| match one.role {
+        Role::Aim { epsilon } => {
+            Some(format!("{} by {}", one.said, words::quantity(epsilon, &unit_of(&one.kind))))
+        }
+        Role::Constraint { .. } => None,
+    }));
+    let names: Vec<String> = labels(listed).map(|label| format!("`{label}`")).collect();
+    let (names, aims, error) = (names.join(", "), aims.join(" or "), words::error(delta));
+    let others = "each other option exceeds one of these in no aim by as much";
+    format!(
+        "none exceeds {names} in {aims} unless it is worse in another aim; {others}, error at most {error}"
+    )
+}
+
 impl Answers<'_> {
     /// The result of a ranking that has stopped.
     fn rank(&self, rank: &RankSampling<'_>, ranked: RankOutcome) -> Result<QueryResult, Fault> {
         let query = rank.query();
-        let Ask::Rank { options, measure, ranking, models } = &query.ask else {
+        let Ask::Rank { options, measure, ranking, models, beside } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
         let setup = rank.setup();
-        let mut result = self.blank(query, Kind::Rank);
+        let is_front = beside.iter().any(|one| matches!(one.role, Role::Aim { .. }));
+        let mut result = self.blank(query, if is_front { Kind::Pareto } else { Kind::Rank });
         result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = ranked.stop;
@@ -73,13 +112,16 @@ impl Answers<'_> {
         let arm = columns.min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or_default();
         let (own, prepared, column) = (settings(arm), setup.worlds[arm], options[arm].target.column);
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
-        let mut listed = tables::ranked(&ranked, options, models, query.every.as_ref());
+        let mut listed = tables::ranked(&ranked, options, (models, query.every.as_ref()), beside);
+        listed.aim.clone_from(&query.said.measure);
         listed.means = listed.choice.is_some().then(|| means(prepared, options[arm].advice)).flatten();
         let score = words::measured(query, measure, joined.clipped);
         if let Some(choice) = &listed.choice {
             if listed.gap < ranked.scale {
+                let among = constraints(beside);
+                let among = if among.is_empty() { among } else { format!(" of those with {among}") };
                 result.certifies = format!(
-                    "{score} of `{choice}` is within {} of the best, error at most {}",
+                    "{score} of `{choice}` is within {} of the best{among}, error at most {}",
                     words::quantity(words::at_most(listed.gap), &result.unit),
                     words::error(delta)
                 );
@@ -99,7 +141,16 @@ impl Answers<'_> {
                 _ => witness::extremes(tally),
             };
             let of = (column, options[arm].advice);
-            result.witnesses = self.witnesses(&result, prepared, of, &picks, &own);
+            result.witnesses = self.witnesses(&result.unit, prepared, of, &picks, &own);
+        }
+        if listed.is_empty {
+            let said = constraints(beside);
+            result.certifies = format!("no option satisfies {said}, error at most {}", words::error(delta));
+            result.certificate = Some(Certificate { claim: Certified::Nothing, error: delta });
+        } else if is_front && ranked.finished {
+            result.certifies = front(query, (measure, ranking.value("epsilon")), beside, &listed, delta);
+            let options = labels(&listed).map(str::to_owned).collect();
+            result.certificate = Some(Certificate { claim: Certified::Front { options }, error: delta });
         }
         if let Some(every) = &query.every {
             result.every = every::of_ranking(every, &ranked, options, &listed);

@@ -88,7 +88,7 @@ impl Answers<'_> {
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
         let settings = &result.asked.settings;
-        result.witnesses = self.witnesses(&result, prepared, (column, None), &picks, settings);
+        result.witnesses = self.witnesses(&result.unit, prepared, (column, None), &picks, settings);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }

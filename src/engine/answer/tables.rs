@@ -1,8 +1,9 @@
 //! How options and sides stand: the tables of rankings and comparisons.
 
+use super::unit_of;
 use crate::base::math::at_most;
-use crate::compile::study::{Every, RankOption};
-use crate::engine::outcome::{Comparison, Counts, RankedOption, Ranking, Side, Status};
+use crate::compile::study::{Beside, Every, RankOption, Role};
+use crate::engine::outcome::{Also, Comparison, Counts, RankedOption, Ranking, Side, Status};
 use crate::engine::sampling::compare::Gap;
 use crate::engine::sampling::procedure::{around, of_mean, sequence, share};
 use crate::engine::sampling::rank::RankOutcome;
@@ -49,12 +50,27 @@ fn of_option(ranked: &RankOutcome, models: usize, option: usize) -> (f64, stats:
     })
 }
 
-/// The options of a ranking, the choice first, then by score.
+/// What was asked of an option besides its score.
+fn also(ranked: &RankOutcome, option: usize, beside: &[Beside]) -> Vec<Also> {
+    let known = ranked.also.get(option).map_or(&[][..], Vec::as_slice);
+    let each = beside.iter().zip(known).map(|(one, (estimate, interval, holds))| {
+        let (what, holds) = match &one.role {
+            Role::Constraint { text, .. } => (format!("{} {text}", one.said), *holds),
+            Role::Aim { .. } => (one.said.clone(), None),
+        };
+        let nothing = ranked.tallies[option].counts.trials == 0;
+        let value = around(if nothing { f64::NAN } else { *estimate }, *interval);
+        Also { what, unit: unit_of(&one.kind), value, holds }
+    });
+    each.collect()
+}
+
+/// The options of a ranking, the choice first, then by score; of a front its options first, then those that are open.
 pub(in crate::engine) fn ranked(
     ranked: &RankOutcome,
     options: &[RankOption],
-    models: usize,
-    every: Option<&Every>,
+    (models, every): (usize, Option<&Every>),
+    beside: &[Beside],
 ) -> Ranking {
     let values = every.map_or(&[][..], |every| &every.values);
     let choice = &ranked.choice;
@@ -64,7 +80,15 @@ pub(in crate::engine) fn ranked(
     let chosen = ranked.finished || all.iter().any(told);
     let mut order: Vec<usize> = (0..all.len()).collect();
     // Those without trials have no value, and come last.
-    let key = |option: usize| (option != choice.arm, all[option].2.trials == 0);
+    let is_front = beside.iter().any(|one| matches!(one.role, Role::Aim { .. }));
+    let class = |option: usize| match option {
+        _ if is_front && choice.certified.contains(&option) => 0,
+        _ if is_front && choice.open.contains(&option) => 1,
+        _ if choice.excluded.contains(&option) => 3,
+        _ if !is_front && option == choice.arm => 0,
+        _ => 2,
+    };
+    let key = |option: usize| (class(option), all[option].2.trials == 0);
     let value = |option: usize| if key(option).1 { 0.0 } else { -all[option].0 };
     order.sort_by(|&a, &b| key(a).cmp(&key(b)).then(value(a).total_cmp(&value(b))).then(a.cmp(&b)));
     let best = all.iter().fold(f64::NEG_INFINITY, |best, (_, interval, _)| best.max(interval.low));
@@ -75,6 +99,14 @@ pub(in crate::engine) fn ranked(
             let estimate = if counts.trials == 0 { f64::NAN } else { estimate };
             let status = if !chosen {
                 Status::Open
+            } else if choice.excluded.contains(&option) {
+                Status::Excluded
+            } else if is_front {
+                match class(option) {
+                    0 => Status::Front,
+                    1 => Status::Open,
+                    _ => Status::Beaten,
+                }
             } else if option == choice.arm {
                 Status::Chosen
             } else if ranked.finished && choice.certified.contains(&option) {
@@ -98,11 +130,14 @@ pub(in crate::engine) fn ranked(
                 counts,
                 status,
                 under: under.collect(),
+                also: also(ranked, option, beside),
             }
         })
         .collect();
     let gap = if chosen { choice.gap * ranked.scale } else { f64::INFINITY };
     let tied = listed.iter().any(|option| option.status == Status::Tied);
-    let choice = chosen.then(|| options[choice.arm * models].label.clone());
-    Ranking { choice, means: None, gap, tied, options: listed }
+    let is_empty = choice.excluded.len() == all.len();
+    let label = chosen && !is_empty && !is_front;
+    let choice = label.then(|| options[choice.arm * models].label.clone());
+    Ranking { choice, means: None, gap, tied, aim: String::new(), is_empty, options: listed }
 }

@@ -212,8 +212,8 @@ pub(in crate::engine) fn interval(coverage: Coverage, error: f64) -> String {
 pub(in crate::engine) fn measured(query: &Query, measure: &Measure, cut: u64) -> String {
     match &measure.kind {
         MeasureKind::Probability => decided(&query.said),
-        MeasureKind::Quantile { .. } => query.said.measure.clone(),
-        MeasureKind::Expectation { range, dimension } => {
+        MeasureKind::Quantile { .. } | MeasureKind::Curve { .. } => query.said.measure.clone(),
+        MeasureKind::Expectation { range, dimension, .. } => {
             let said = &query.said.measure;
             if cut == 0 { said.clone() } else { clipped(said, *range, &dimension.to_string()) }
         }

@@ -23,6 +23,8 @@ impl fmt::Display for Certificate {
             Certified::Decided(Claim::Between(low, high)) => write!(f, "{low} < P < {high}"),
             Certified::Between { low, high } => write!(f, "between {low} and {high}"),
             Certified::Best { choice, gap } => write!(f, "`{choice}` is within {gap} of the best"),
+            Certified::Nothing => write!(f, "no option satisfies the constraints"),
+            Certified::Front { options } => write!(f, "none dominates `{}`", options.join("`, `")),
         }?;
         write!(f, ", error at most {}", self.error)
     }
@@ -46,5 +48,13 @@ pub enum Certified {
         choice: String,
         /// The largest loss.
         gap: f64,
+    },
+    /// No option satisfies the constraints.
+    Nothing,
+    /// No option is better than one of these by the width of an aim without being worse in another; each other option exceeds
+    /// one of these in no aim by as much.
+    Front {
+        /// Their names.
+        options: Vec<String>,
     },
 }

@@ -15,6 +15,8 @@ pub struct Distribution {
     /// Kiefer, Wolfowitz; Massart), however unresolved trials are read. `None` where the number of trials depends on
     /// the values.
     pub band: Option<f64>,
+    /// The probability as a function of a time, where that was asked; the rest is empty then.
+    pub curve: Option<Curve>,
 }
 
 /// A step of the empirical distribution function.
@@ -24,6 +26,28 @@ pub struct Step {
     pub value: f64,
     /// Share of the resolved trials with at most this value.
     pub share: f64,
+}
+
+/// A probability as a function of a time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Its points, by time ascending; their intervals hold jointly.
+    pub points: Vec<CurvePoint>,
+    /// Half of the width of the band, before it is cut at 0 and 1.
+    pub reach: f64,
+    /// The name of the bound.
+    pub name: String,
+    /// The unit of times: `s`, or `steps`.
+    pub unit: String,
+}
+
+/// A point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// The time.
+    pub at: f64,
+    /// The probability.
+    pub value: Interval,
 }
 
 /// Counts in bins of equal width.

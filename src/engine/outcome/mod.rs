@@ -14,10 +14,10 @@ use crate::engine::flaw::Flaw;
 pub use crate::engine::witness::decider::Decider;
 pub use crate::trials::budget::Stop;
 pub use certificate::{Certificate, Certified};
-pub use distribution::{Distribution, Histogram, Quantile, Step};
+pub use distribution::{Curve, CurvePoint, Distribution, Histogram, Quantile, Step};
 pub use every::{Every, UnderOne};
 pub use evidence::{Evidence, Snapshot, Standing, next_after};
-pub use ranking::{RankedOption, Ranking, Status};
+pub use ranking::{Also, RankedOption, Ranking, Status};
 pub use witness::{Shows, Witness};
 
 /// Everything one call has computed.
@@ -258,6 +258,8 @@ pub enum Kind {
     Compare,
     /// The best of several moves or values.
     Rank,
+    /// Those of several moves or values that none dominates.
+    Pareto,
 }
 
 impl Kind {
@@ -268,6 +270,7 @@ impl Kind {
             Self::Estimate => "estimate",
             Self::Compare => "compare",
             Self::Rank => "rank",
+            Self::Pareto => "pareto",
         }
     }
 }

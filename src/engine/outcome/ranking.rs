@@ -15,6 +15,10 @@ pub struct Ranking {
     pub gap: f64,
     /// Whether other options carry the same certificate.
     pub tied: bool,
+    /// What the scores of the options are: `P(safe)`.
+    pub aim: String,
+    /// Whether no option satisfies the constraints, certainly.
+    pub is_empty: bool,
     /// All options, best first.
     pub options: Vec<RankedOption>,
 }
@@ -34,6 +38,21 @@ pub struct RankedOption {
     pub status: Status,
     /// Its score under each of several models; empty for one.
     pub under: Vec<Side>,
+    /// What was asked of it besides: constraints, or further aims.
+    pub also: Vec<Also>,
+}
+
+/// What was asked of an option besides its score.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Also {
+    /// What it is: `P(together)`, or a constraint: `P(together) >= 0.9`.
+    pub what: String,
+    /// Its unit; empty for probabilities.
+    pub unit: String,
+    /// Its value.
+    pub value: Interval,
+    /// Whether the option satisfies it, if it is a constraint and that is known.
+    pub holds: Option<bool>,
 }
 
 /// What is known of an option.
@@ -45,6 +64,10 @@ pub enum Status {
     Tied,
     /// Shown to be worse than another option, by paired trials or by the intervals of the two.
     Beaten,
+    /// One of those that none dominates: each rival is worse in some aim, or better in none by its width.
+    Front,
+    /// It violates a constraint.
+    Excluded,
     /// Neither: it may be the best by no more than the certified gap, and may be much worse.
     Open,
 }
@@ -56,6 +79,8 @@ impl Status {
             Self::Chosen => "chosen",
             Self::Tied => "tied",
             Self::Beaten => "beaten",
+            Self::Front => "front",
+            Self::Excluded => "excluded",
             Self::Open => "open",
         }
     }

@@ -7,12 +7,12 @@ use crate::engine::outcome::{Evidence, Interval, Snapshot, Stop, next_after};
 use crate::engine::sampling::estimate::LARGEST_ROUND;
 use crate::engine::sampling::forecast::{self, PilotStatistics};
 use crate::engine::sampling::pilot::Pilot;
-use crate::engine::sampling::procedure::{outcome, value};
+use crate::engine::sampling::procedure::{of_mean, outcome, value};
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{Forecast, Likely, Watch};
 use crate::engine::trials::executor::{Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::stats::{self, Difference, Mean};
+use crate::stats::{self, Bounded, Difference, Mean};
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Cell, Item, Reading};
 
@@ -22,6 +22,8 @@ enum Differences {
     Probability(Difference),
     /// Of expectations: the mean of the differences, which lie in twice the range.
     Expectation(Mean),
+    /// Of tails, which are no means of differences: the interval of each side has half of the error.
+    Apart,
 }
 
 /// A comparison that has stopped.
@@ -29,7 +31,7 @@ pub(in crate::engine) struct Gap {
     /// What each side consumed.
     pub(in crate::engine) sides: [Tally; 2],
     /// The mean of each side, for expectations.
-    pub(in crate::engine) means: Vec<Mean>,
+    pub(in crate::engine) means: Vec<Bounded>,
     /// Why it stopped.
     pub(in crate::engine) stop: Stop,
     /// Interval of first less second.
@@ -83,7 +85,7 @@ pub(in crate::engine) struct CompareSampling<'s> {
     /// What each side consumed.
     pub(in crate::engine) tallies: [Tally; 2],
     /// The mean of each side, for expectations.
-    means: Vec<Mean>,
+    means: Vec<Bounded>,
     /// What it has read so far, for forecasts.
     statistics: PilotStatistics,
     /// How its evidence grew; `None` where nobody asks.
@@ -103,10 +105,11 @@ impl<'s> CompareSampling<'s> {
     ) -> Result<Self, Fault> {
         let range = kind.range();
         let means = match range {
-            Some((low, high)) => [(); 2]
-                .map(|()| match within {
-                    Some(_) => Mean::running(low, high, delta),
-                    None => Mean::fixed(low, high, methods::PLANNED_TRIALS, delta),
+            Some(range) => [(); 2]
+                .map(|()| match (within, kind.share()) {
+                    (_, Some(share)) => Bounded::running(range, Some(share), 0.5 * delta),
+                    (Some(_), None) => Bounded::running(range, None, delta),
+                    (None, None) => Bounded::fixed(range, None, methods::PLANNED_TRIALS, delta),
                 })
                 .into_iter()
                 .collect::<Result<_, _>>()?,
@@ -114,6 +117,7 @@ impl<'s> CompareSampling<'s> {
         };
         let procedure = match range {
             None => Differences::Probability(Difference::new(delta, within)?),
+            Some(_) if kind.share().is_some() => Differences::Apart,
             Some((low, high)) => {
                 let width = high - low;
                 Differences::Expectation(match within {
@@ -264,6 +268,7 @@ impl<'s> CompareSampling<'s> {
                     }
                 }
                 let finished = match (&mut self.procedure, self.range) {
+                    (Differences::Apart, _) => self.is_narrow(),
                     (Differences::Probability(difference), _) => difference.observe(outcome(a), outcome(b)),
                     (Differences::Expectation(mean), range) => {
                         let range = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -297,8 +302,28 @@ impl<'s> CompareSampling<'s> {
                 ((low.mean(), high.mean()), difference.interval())
             }
             Differences::Expectation(mean) => (mean.estimate(), mean.interval()),
+            Differences::Apart => return self.apart(),
         };
         (0.5 * (estimate.0 + estimate.1), interval)
+    }
+
+    /// First less second, each known by itself.
+    fn apart(&self) -> (f64, stats::Interval) {
+        let [first, second] = [0, 1].map(|side| of_mean(&self.means[side]));
+        let interval = stats::Interval {
+            low: first.1.low - second.1.high,
+            high: first.1.high - second.1.low,
+            error: self.delta,
+            coverage: first.1.coverage,
+        };
+        (first.0 - second.0, interval)
+    }
+
+    /// Whether that is as narrow as was asked for; looked at where a side is.
+    fn is_narrow(&mut self) -> bool {
+        let Some(within) = self.within else { return false };
+        let looked = self.means.iter_mut().map(|mean| mean.look().is_some()).fold(false, |a, b| a | b);
+        looked && self.apart().1.half_width() <= within
     }
 
     /// Notes what is known by now; `due` is the number of pairs for which it is time, from that noted last.
@@ -322,6 +347,7 @@ impl<'s> CompareSampling<'s> {
                 ((high.first.min(low.first), low.second.min(high.second)), difference.unresolved())
             }
             Differences::Expectation(mean) => ((0, 0), mean.read().1),
+            Differences::Apart => ((0, 0), means.iter().map(|mean| mean.read().1).sum()),
         };
         let pairs = tallies[0].counts.trials;
         let wide = |within: f64| interval.half_width() > within * (1.0 + 1e-9);

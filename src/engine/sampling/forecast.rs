@@ -129,9 +129,10 @@ pub(in crate::engine) fn entry(
     };
     let range = match measure.kind {
         MeasureKind::Expectation { range: (low, high), .. } => high - low,
-        MeasureKind::Probability | MeasureKind::Quantile { .. } => 1.0,
+        MeasureKind::Probability | MeasureKind::Quantile { .. } | MeasureKind::Curve { .. } => 1.0,
     };
-    let trials = |guess: Guess| (forecast.trials)(&chosen.values, &Guess { theta, range, ..guess });
+    let tail = measure.kind.share().unwrap_or(1.0);
+    let trials = |guess: Guess| (forecast.trials)(&chosen.values, &Guess { theta, range, tail, ..guess });
     let likely = trials(statistics.guess(0.1 * range));
     let all = statistics.guesses(0.1 * range).into_iter().map(trials);
     let (least, most) =
@@ -154,7 +155,7 @@ pub(in crate::engine) fn ahead(read: u64, likely: Option<Likely>) -> u64 {
 
 /// What the truth may be, of a query that is not known yet.
 const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
-    Guess { share, mean, variance, theta: f64::NAN, range: 1.0 }
+    Guess { share, mean, variance, theta: f64::NAN, range: 1.0, tail: 1.0 }
 }
 
 /// Pairs that a comparison is likely to take; `statistics` is that of the differences.

@@ -1,4 +1,5 @@
-//! Which option is best by its least score under several models: each option has a column for each of them.
+//! Which option is best by its least score under several models: each option has a column for each of them. Also which is best
+//! by a number that is no mean of differences, such as that of the largest share; that has one column.
 //!
 //! A confidence sequence for each column, all of them jointly valid at all times, gives an interval for the least score of
 //! each option: from the least lower end to the least upper end. An option is chosen once no other one can be more than
@@ -12,12 +13,11 @@
 //! ```
 
 use crate::base::math::{at_least, at_most};
-use crate::engine::outcome::Counts;
-use crate::engine::sampling::procedure::{of_mean, sequence, share, value};
+use crate::engine::sampling::procedure::score;
 use crate::engine::sampling::rank::WORD;
-use crate::stats::ranking::{Choice, Share};
-use crate::stats::{Interval, Invalid, Mean};
-use crate::trials::cell::{Cell, Reading};
+use crate::stats::ranking::{Choice, Goal, Share};
+use crate::stats::{Interval, Invalid, Running};
+use crate::trials::cell::Cell;
 
 /// Its name in reports.
 pub(in crate::engine) const NAME: &str = "least_score";
@@ -25,20 +25,14 @@ pub(in crate::engine) const NAME: &str = "least_score";
 /// A round of a column has no fewer than one in so many of the trials that it has.
 const GROWTH: u64 = 8;
 
-/// What is known of one option under one model.
-enum Column {
-    Probability(Counts),
-    Expectation(Box<Mean>),
-}
-
 /// A race by least scores.
 pub(in crate::engine) struct Least {
     models: usize,
     epsilon: f64,
-    /// The error of each interval.
-    delta: f64,
     scale: f64,
-    columns: Vec<Column>,
+    columns: Vec<Running>,
+    /// The estimate and the interval of each column, as they are after a round.
+    known: Vec<(f64, Interval)>,
     /// Trials of each column so far.
     trials: Vec<u64>,
     deviations: Vec<f64>,
@@ -56,26 +50,21 @@ struct Score {
 }
 
 impl Least {
-    /// Of so many columns, with `models` to an option; expectations have a range.
+    /// Of so many columns, with `models` to an option.
     pub(in crate::engine) fn new(
         (columns, models): (usize, usize),
         (epsilon, delta): (f64, f64),
-        range: Option<(f64, f64)>,
+        goal: Goal,
         deviations: Vec<f64>,
     ) -> Result<Self, Invalid> {
-        let delta = delta / columns as f64;
-        let column = || match range {
-            Some((low, high)) => {
-                Mean::running(low, high, delta).map(|mean| Column::Expectation(Box::new(mean)))
-            }
-            None => Ok(Column::Probability(Counts::default())),
-        };
+        let (low, high) = goal.range();
+        let column = goal.running(delta / columns as f64)?;
         let mut this = Self {
             models,
             epsilon,
-            delta,
-            scale: range.map_or(1.0, |(low, high)| high - low),
-            columns: (0..columns).map(|_| column()).collect::<Result<_, _>>()?,
+            scale: high - low,
+            known: vec![(column.estimate(), column.interval()); columns],
+            columns: vec![column; columns],
             trials: vec![0; columns],
             deviations: deviations.into_iter().step_by(models).collect(),
             wanted: Vec::new(),
@@ -85,17 +74,10 @@ impl Least {
         Ok(this)
     }
 
-    fn value(&self, column: usize) -> (f64, Interval) {
-        match &self.columns[column] {
-            Column::Probability(counts) => (share(*counts), sequence(*counts, self.delta)),
-            Column::Expectation(mean) => of_mean(mean),
-        }
-    }
-
     fn score(&self, option: usize) -> Score {
         let worst = Score { estimate: f64::INFINITY, low: f64::INFINITY, high: f64::INFINITY };
         (option * self.models..(option + 1) * self.models).fold(worst, |score, column| {
-            let (estimate, interval) = self.value(column);
+            let (estimate, interval) = self.known[column];
             Score {
                 estimate: at_most(score.estimate, estimate),
                 low: at_most(score.low, interval.low),
@@ -147,7 +129,7 @@ impl Least {
             let asked = [(leader, below, above), (rival, above, below)];
             for (option, ..) in asked.into_iter().filter(|(_, own, other)| 2.0 * own >= *other) {
                 for column in option * self.models..(option + 1) * self.models {
-                    if self.value(column).1.low < scores[option].high {
+                    if self.known[column].1.low < scores[option].high {
                         let from = self.trials[column];
                         let to = from + WORD.max(from / GROWTH / WORD * WORD);
                         self.wanted.push(Share { arm: column, from, to });
@@ -171,21 +153,11 @@ impl Least {
     /// Takes the cells of a round of a column.
     pub(in crate::engine) fn feed(&mut self, column: usize, cells: &[Cell]) {
         self.trials[column] += cells.len() as u64;
+        let running = &mut self.columns[column];
         for cell in cells {
-            match &mut self.columns[column] {
-                Column::Probability(counts) => {
-                    counts.trials += 1;
-                    match cell.reading {
-                        Reading::Truth(true) => counts.successes += 1,
-                        Reading::Truth(false) => counts.failures += 1,
-                        Reading::Value(_) | Reading::Unresolved | Reading::Faulty => counts.unresolved += 1,
-                    }
-                }
-                Column::Expectation(mean) => {
-                    mean.observe(value(cell));
-                }
-            }
+            running.observe(score(cell));
         }
+        self.known[column] = (running.estimate(), running.interval());
         self.missing = self.missing.saturating_sub(1);
         if self.missing == 0 {
             self.plan();
@@ -206,6 +178,7 @@ impl Least {
             certified: (0..scores.len())
                 .filter(|option| Self::gap(&scores, *option) <= self.epsilon)
                 .collect(),
+            excluded: Vec::new(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Procedures on their way: they ask for trials, read them in the order of their indices, and stop.
 
 pub(in crate::engine) mod compare;
+pub(in crate::engine) mod contest;
 pub(in crate::engine) mod entry;
 pub(in crate::engine) mod estimate;
 pub(in crate::engine) mod forecast;

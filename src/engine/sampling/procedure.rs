@@ -2,13 +2,14 @@
 
 use crate::compile::study::{Ask, MeasureKind};
 use crate::engine::fault::Fault;
-use crate::engine::outcome::{Distribution, Histogram, Interval, Quantile, Step};
+use crate::engine::outcome::{Curve, CurvePoint, Distribution, Histogram, Interval, Quantile, Step};
 use crate::stats::calibration::Level;
 use crate::stats::quantile::Sample;
+use crate::stats::ranking::Goal;
 use crate::stats::spec::{Against, Make};
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, Estimator as _, Hypothesis, Mean, Outcome, Readings,
+    self, AnyEstimator, AnyTest, Bounded, Coverage, Decision, Estimator as _, Hypothesis, Outcome, Readings,
     Rule as _, Statement,
 };
 use crate::trials::cell::{Cell, Reading};
@@ -26,7 +27,7 @@ pub(in crate::engine) enum Procedure {
     /// What is an expectation, and perhaps: is it above a threshold?
     Mean {
         /// The estimator.
-        mean: Box<Mean>,
+        mean: Box<Bounded>,
         /// Threshold of a check.
         threshold: Option<f64>,
         /// Values, for the histogram.
@@ -43,6 +44,19 @@ pub(in crate::engine) enum Procedure {
         /// Whether the interval is that of the band around the whole distribution function.
         band: bool,
     },
+    /// What is a probability as a function of a time?
+    Curve {
+        /// The times of trials.
+        sample: Box<Sample>,
+        /// The points.
+        times: Vec<f64>,
+        /// Whether it is the probability that the time is above a point.
+        falls: bool,
+        /// The name of the bound, and its unit.
+        names: (String, String),
+        /// Error probability.
+        delta: f64,
+    },
 }
 
 /// The outcome of a cell for a procedure of probabilities.
@@ -58,6 +72,26 @@ pub(in crate::engine) fn value(cell: &Cell) -> Option<f64> {
     match cell.reading {
         Reading::Value(value) => Some(value),
         Reading::Truth(_) | Reading::Unresolved | Reading::Faulty => None,
+    }
+}
+
+/// What a cell counts for: a number, 1 or 0 for a truth value.
+pub(in crate::engine) fn score(cell: &Cell) -> Option<f64> {
+    match cell.reading {
+        Reading::Truth(held) => Some(f64::from(u8::from(held))),
+        Reading::Value(value) => Some(value),
+        Reading::Unresolved | Reading::Faulty => None,
+    }
+}
+
+/// What a measure aims at; `None` if options are not compared by it.
+pub(in crate::engine) fn goal(kind: &MeasureKind) -> Option<Goal> {
+    match kind {
+        MeasureKind::Probability => Some(Goal::Probability),
+        MeasureKind::Expectation { range, .. } => {
+            Some(kind.share().map_or(Goal::Mean(*range), |share| Goal::Tail(*range, share)))
+        }
+        MeasureKind::Quantile { .. } | MeasureKind::Curve { .. } => None,
     }
 }
 
@@ -81,8 +115,8 @@ impl Procedure {
             (Make::Estimator(make), MeasureKind::Probability, None) => {
                 Self::Probability(Box::new(Readings::new(make(values, seed)?)))
             }
-            (Make::Mean(make), MeasureKind::Expectation { range, .. }, against) => Self::Mean {
-                mean: Box::new(make(*range, values)?),
+            (Make::Mean(make), kind @ MeasureKind::Expectation { range, .. }, against) => Self::Mean {
+                mean: Box::new(make(*range, kind.share(), values)?),
                 threshold: against.map(|against| against.theta),
                 values: Vec::new(),
             },
@@ -91,6 +125,13 @@ impl Procedure {
                 level: *level,
                 delta: chosen.value("delta"),
                 band,
+            },
+            (Make::Curve, MeasureKind::Curve { times, falls, name, dimension, .. }, None) => Self::Curve {
+                names: (name.clone(), dimension.to_string()),
+                sample: Box::new(Sample::new(chosen.value("trials") as u64)?),
+                times: times.clone(),
+                falls: *falls,
+                delta: chosen.value("delta"),
             },
             _ => return Err(Fault::Unsuitable),
         })
@@ -107,14 +148,16 @@ impl Procedure {
                 let finished = mean.observe(value);
                 match threshold {
                     None => finished,
-                    // The interval holds at all times at once, so it may be looked at after every trial.
-                    Some(theta) => {
-                        let interval = mean.interval();
-                        finished || interval.low > *theta || interval.high < *theta || mean.splits(*theta)
-                    }
+                    // The interval holds at all times at once, so it may be looked at whenever that is worth it.
+                    Some(theta) => match mean.look() {
+                        Some(interval) => {
+                            finished || interval.low > *theta || interval.high < *theta || mean.splits(*theta)
+                        }
+                        None => finished,
+                    },
                 }
             }
-            Self::Quantile { sample, .. } => sample.observe(value(cell)),
+            Self::Quantile { sample, .. } | Self::Curve { sample, .. } => sample.observe(value(cell)),
         }
     }
 
@@ -125,7 +168,7 @@ impl Procedure {
             Self::Probability(estimator) => estimator.readings().0.limit(),
             Self::Mean { mean, threshold: None, .. } => Some(mean.limit()),
             Self::Mean { .. } => None,
-            Self::Quantile { sample, .. } => Some(sample.size()),
+            Self::Quantile { sample, .. } | Self::Curve { sample, .. } => Some(sample.size()),
         }
     }
 
@@ -133,7 +176,9 @@ impl Procedure {
     pub(in crate::engine) fn most_values(&self, max_trials: u64) -> u64 {
         match self {
             Self::Test(_) | Self::Probability(_) => 0,
-            Self::Mean { .. } | Self::Quantile { .. } => self.limit().unwrap_or(u64::MAX).min(max_trials),
+            Self::Mean { .. } | Self::Quantile { .. } | Self::Curve { .. } => {
+                self.limit().unwrap_or(u64::MAX).min(max_trials)
+            }
         }
     }
 
@@ -143,7 +188,7 @@ impl Procedure {
             Self::Test(test) => test.readings().0.rule().is_planned(),
             Self::Probability(estimator) => estimator.readings().0.rule().is_planned(),
             Self::Mean { mean, threshold, .. } => threshold.is_none() && mean.is_fixed(),
-            Self::Quantile { .. } => true,
+            Self::Quantile { .. } | Self::Curve { .. } => true,
         }
     }
 
@@ -218,7 +263,7 @@ impl Procedure {
         let interval = match self {
             Self::Probability(estimator) => estimator.interval(),
             Self::Mean { mean, .. } => mean.interval(),
-            Self::Test(_) | Self::Quantile { .. } => return false,
+            Self::Test(_) | Self::Quantile { .. } | Self::Curve { .. } => return false,
         };
         estimator.width(interval).is_some_and(|epsilon| interval.half_width() > epsilon * (1.0 + 1e-9))
     }
@@ -229,7 +274,7 @@ impl Procedure {
             Self::Test(test) => test.readings().0.rule().numbers(),
             Self::Probability(estimator) => estimator.readings().0.rule().numbers(),
             Self::Mean { mean, .. } => mean.numbers().into_iter().collect(),
-            Self::Quantile { .. } => Vec::new(),
+            Self::Quantile { .. } | Self::Curve { .. } => Vec::new(),
         }
     }
 
@@ -286,7 +331,41 @@ impl Procedure {
                 let coverage = if sample.finished() { Coverage::FixedSize } else { Coverage::TimeUniform };
                 Some((quantile(sample, *level, *delta, *band)?, coverage, *delta))
             }
+            Self::Curve { sample, delta, .. } => {
+                let coverage = if sample.finished() { Coverage::FixedSize } else { Coverage::TimeUniform };
+                let delta = *delta;
+                Some((self.curve()?.points.last()?.value, coverage, delta))
+            }
         }
+    }
+
+    /// The points of a curve, jointly within the band.
+    pub(in crate::engine) fn curve(&mut self) -> Option<Curve> {
+        let Self::Curve { sample, times, falls, names, delta } = self else { return None };
+        let (trials, unresolved) = (sample.trials() as f64, sample.unresolved() as f64);
+        if trials == 0.0 {
+            return None;
+        }
+        // The band of both readings of unresolved trials.
+        let reach = sample.reach(*delta) - unresolved / trials;
+        let sorted = sample.sorted().to_vec();
+        let falls = *falls;
+        let point = |time: &f64| {
+            // Times are multiples of a step, and points decimals.
+            let held = sorted.partition_point(|value| *value <= time + 1e-9) as f64;
+            let (least, most) = (held / trials, (held + unresolved) / trials);
+            let (low, high) = ((least - reach).max(0.0), (most + reach).min(1.0));
+            let middle = 0.5 * (least + most);
+            let value = if falls {
+                Interval { estimate: 1.0 - middle, low: 1.0 - high, high: 1.0 - low }
+            } else {
+                Interval { estimate: middle, low, high }
+            };
+            CurvePoint { at: *time, value }
+        };
+        let points = times.iter().map(point).collect();
+        let (name, unit) = names.clone();
+        Some(Curve { points, reach: sample.reach(*delta), name, unit })
     }
 
     /// Histogram, quantiles and empirical distribution of a metric.
@@ -308,6 +387,9 @@ impl Procedure {
                 let reach = (sample.trials() > 0).then(|| sample.reach(*delta));
                 (sample.sorted().to_vec(), quantiles.into_iter().collect(), reach)
             }
+            Self::Curve { .. } => {
+                return Some(Distribution { curve: self.curve(), ..Distribution::default() });
+            }
             _ => return None,
         };
         values.sort_by(f64::total_cmp);
@@ -324,7 +406,7 @@ impl Procedure {
             }
             _ => None,
         };
-        Some(Distribution { histogram, quantiles, empirical: empirical(&values), band })
+        Some(Distribution { histogram, quantiles, empirical: empirical(&values), band, curve: None })
     }
 }
 
@@ -375,7 +457,7 @@ pub(in crate::engine) fn sequence(counts: crate::engine::outcome::Counts, error:
 }
 
 /// The estimate of a mean, in the middle between both readings of unresolved trials, and its interval.
-pub(in crate::engine) fn of_mean(mean: &Mean) -> (f64, stats::Interval) {
+pub(in crate::engine) fn of_mean(mean: &Bounded) -> (f64, stats::Interval) {
     let (low, high) = mean.estimate();
     (0.5 * (low + high), mean.interval())
 }

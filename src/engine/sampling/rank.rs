@@ -4,35 +4,26 @@
 //! are part of the address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
 
 use crate::base::lanes::LANES;
-use crate::compile::study::{MeasureKind, Query, RankOption, Target};
+use crate::compile::study::{Beside, MeasureKind, Query, RankOption, Target};
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Standing, Stop, next_after};
+use crate::engine::sampling::contest::Contest;
 use crate::engine::sampling::forecast::{self, PilotStatistics};
-use crate::engine::sampling::least::Least;
 use crate::engine::sampling::pilot::Pilot;
-use crate::engine::sampling::procedure::{self, of_mean, outcome, sequence, value};
+use crate::engine::sampling::procedure::{self, of_mean, sequence, value};
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{Forecast, Likely, Watch};
 use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::stats::ranking::{Booleans, Choice, Each, Race, Ranking, Scores, Share};
-use crate::stats::{self, Mean, Outcome};
+use crate::stats::ranking::{Choice, Ranking, Share};
+use crate::stats::{self, Bounded};
 use crate::trials::budget::Budget;
-use crate::trials::cell::{Item, Reading, Series};
+use crate::trials::cell::{Cell, Item, Reading, Series};
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
 
 /// Trials an option gets in a round: traces of crowds are slow.
 pub(in crate::engine) const WORD: u64 = 32;
-
-/// How the options are compared.
-#[allow(clippy::large_enum_variant, reason = "there is one at a time")]
-enum Contest {
-    Booleans(Race<Booleans>),
-    Scores { race: Race<Scores>, range: (f64, f64) },
-    Each(Each),
-    Least(Least),
-}
 
 /// A ranking that has stopped.
 pub(in crate::engine) struct RankOutcome {
@@ -48,6 +39,8 @@ pub(in crate::engine) struct RankOutcome {
     pub(in crate::engine) stop: Stop,
     /// The largest gap that there can be: 1 for probabilities, the range for metrics.
     pub(in crate::engine) scale: f64,
+    /// What was asked besides, option by option: estimate, interval, and whether it is satisfied.
+    pub(in crate::engine) also: Vec<Vec<(f64, stats::Interval, Option<bool>)>>,
     /// How far the options were on the way; `None` where nobody asks.
     pub(in crate::engine) evidence: Option<Vec<Standing>>,
 }
@@ -64,84 +57,14 @@ pub(in crate::engine) struct RankSetup<'s> {
     pub(in crate::engine) rule: (f64, f64, Ranking),
     /// Under how many models each option is asked for its score.
     pub(in crate::engine) models: usize,
+    /// What is asked of the options besides.
+    pub(in crate::engine) beside: &'s [Beside],
 }
 
 impl RankSetup<'_> {
     /// A trial of an option.
     pub(in crate::engine) fn item(&self, arm: usize, index: u64) -> Item {
         Item { advice: self.options[arm].advice, index }
-    }
-}
-
-impl Contest {
-    fn new(setup: &RankSetup<'_>) -> Result<Self, Fault> {
-        let (epsilon, delta, ranking) = setup.rule;
-        let arms = setup.options.len();
-        let deviations: Vec<f64> = setup.options.iter().map(|option| option.deviation).collect();
-        if setup.models > 1 {
-            if let MeasureKind::Quantile { .. } = setup.kind {
-                return Err(Fault::Unsuitable);
-            }
-            let range = setup.kind.range();
-            return Ok(Self::Least(Least::new((arms, setup.models), (epsilon, delta), range, deviations)?));
-        }
-        Ok(match (&setup.kind, ranking) {
-            (MeasureKind::Probability, Ranking::Okamoto) => {
-                Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?.preferring(deviations))
-            }
-            (MeasureKind::Probability, Ranking::Betting(allocation)) => {
-                Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?.preferring(deviations))
-            }
-            (MeasureKind::Expectation { range, .. }, Ranking::Betting(allocation)) => {
-                let scaled = epsilon / (range.1 - range.0);
-                let race = Race::new(arms, scaled, delta, WORD, allocation)?.preferring(deviations);
-                Self::Scores { race, range: *range }
-            }
-            (MeasureKind::Expectation { .. }, Ranking::Okamoto) | (MeasureKind::Quantile { .. }, _) => {
-                return Err(Fault::Unsuitable);
-            }
-        })
-    }
-
-    fn next_round(&self) -> Vec<Share> {
-        match self {
-            Self::Booleans(race) => race.next_round().to_vec(),
-            Self::Scores { race, .. } => race.next_round().to_vec(),
-            Self::Each(each) => each.next_round().to_vec(),
-            Self::Least(least) => least.next_round().to_vec(),
-        }
-    }
-
-    fn finished(&self) -> bool {
-        match self {
-            Self::Booleans(race) => race.finished(),
-            Self::Scores { race, .. } => race.finished(),
-            Self::Each(each) => each.finished(),
-            Self::Least(least) => least.finished(),
-        }
-    }
-
-    fn choice(&mut self) -> Choice {
-        match self {
-            Self::Booleans(race) => race.choice(),
-            Self::Scores { race, .. } => race.choice(),
-            Self::Each(each) => each.choice(),
-            Self::Least(least) => least.choice(),
-        }
-    }
-
-    fn feed(&mut self, arm: usize, cells: &[crate::trials::cell::Cell]) -> Result<(), Fault> {
-        match self {
-            Self::Booleans(race) => race.feed(arm, &cells.iter().map(outcome).collect::<Vec<Outcome>>())?,
-            Self::Each(each) => each.feed(arm, &cells.iter().map(outcome).collect::<Vec<Outcome>>())?,
-            Self::Least(least) => least.feed(arm, cells),
-            Self::Scores { race, range } => {
-                let scores: Vec<Option<f64>> =
-                    cells.iter().map(|c| value(c).map(|v| (v - range.0) / (range.1 - range.0))).collect();
-                race.feed(arm, &scores)?;
-            }
-        }
-        Ok(())
     }
 }
 
@@ -161,11 +84,20 @@ pub(in crate::engine) struct RankSampling<'s> {
     /// What each option consumed.
     pub(in crate::engine) tallies: Vec<Tally>,
     /// The mean of each option, for expectations.
-    means: Vec<Mean>,
+    means: Vec<Bounded>,
     /// How far the options were; `None` where nobody asks.
     evidence: Option<Vec<Standing>>,
     /// Seconds that it has taken so far.
     pub(in crate::engine) spent: f64,
+}
+
+/// All columns that are asked of an option.
+fn columns(option: &RankOption) -> Vec<usize> {
+    let mut columns: Vec<usize> =
+        std::iter::once(option.target.column).chain(option.beside.iter().copied()).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    columns
 }
 
 /// What a round runs: the items, and for each share of it their places; and whether the budget cut any share.
@@ -192,16 +124,17 @@ impl<'s> RankSampling<'s> {
         let mut targets: Vec<Target> = Vec::new();
         let (mut jobs, mut job_of) = (Vec::new(), Vec::with_capacity(arms));
         for (option, prepared) in setup.options.iter().zip(&setup.worlds) {
+            // Options of one world are asked the same.
             let known = targets.iter().position(|target| *target == option.target);
             job_of.push(known.unwrap_or(targets.len()));
             if known.is_none() {
                 targets.push(option.target);
-                jobs.push(Job::new(prepared, vec![option.target.column], series));
+                jobs.push(Job::new(prepared, columns(option), series));
             }
         }
         let means = match range {
             Some((low, high)) => (0..arms)
-                .map(|_| Mean::running(low, high, setup.rule.1 / arms as f64))
+                .map(|_| Bounded::running((low, high), setup.kind.share(), setup.rule.1 / arms as f64))
                 .collect::<Result<_, _>>()?,
             None => Vec::new(),
         };
@@ -231,6 +164,13 @@ impl<'s> RankSampling<'s> {
     /// The setup.
     pub(in crate::engine) fn setup(&self) -> &RankSetup<'s> {
         &self.setup
+    }
+
+    /// The places of what is asked of an option among the columns of its job.
+    fn places(&self, arm: usize) -> Vec<usize> {
+        let (option, job) = (&self.setup.options[arm], &self.jobs[self.job_of[arm]]);
+        let place = |column: &usize| job.columns.iter().position(|one| one == column).unwrap_or_default();
+        std::iter::once(&option.target.column).chain(&option.beside).map(place).collect()
     }
 
     fn scale(&self) -> f64 {
@@ -277,7 +217,7 @@ impl<'s> RankSampling<'s> {
             (&self.jobs[*job], places.iter().map(|place| items[*place]).collect())
         };
         let jobs: Vec<(&Job<'s>, Vec<Item>)> = parts.iter().map(of_part).collect();
-        let mut all = Cells::new(items.len(), 1);
+        let mut all = Cells::new(items.len(), self.jobs[0].columns.len());
         for (((job, _), places), cells) in
             jobs.iter().zip(parts.values()).zip(executor.run_all(&jobs, budget)?)
         {
@@ -324,7 +264,8 @@ impl<'s> RankSampling<'s> {
         for (share, places) in round.shares.iter().zip(&round.places) {
             for row in places.iter().map(|&place| pilot.cells.row(place)) {
                 let mut one = PilotStatistics::default();
-                if let Some([cell, ..]) = row {
+                let place = self.places(share.arm)[0];
+                if let Some(cell) = row.map(|row| &row[place]) {
                     statistics[share.arm].read(cell, range);
                     one.read(cell, range);
                 }
@@ -423,7 +364,14 @@ impl<'s> RankSampling<'s> {
             })
             .collect();
         let finished = self.procedure.finished();
-        Ok(Some(RankOutcome { tallies, values, finished, choice, stop, scale: self.scale(), evidence }))
+        let side = |at: usize, arm: usize| {
+            let (running, holds) = self.procedure.side(at, arm)?;
+            Some((running.estimate(), running.interval(), holds))
+        };
+        let sides = self.setup.beside.len();
+        let also = (0..arms).map(|arm| (0..sides).filter_map(|at| side(at, arm)).collect()).collect();
+        let scale = self.scale();
+        Ok(Some(RankOutcome { tallies, values, choice, finished, stop, scale, also, evidence }))
     }
 
     /// Notes how far the options are, and who is still in the race; of one number of trials once.
@@ -441,13 +389,14 @@ impl<'s> RankSampling<'s> {
     fn read(&mut self, round: &Round, rows: &Cells, prefix: usize) -> Result<bool, Fault> {
         let mut complete = true;
         for (share, places) in round.shares.iter().zip(&round.places) {
-            let mut cells = Vec::with_capacity(places.len());
+            let columns = self.places(share.arm);
+            let mut cells: Vec<Vec<Cell>> = vec![Vec::with_capacity(places.len()); columns.len()];
             let mut broken = false;
             for &place in places {
                 match rows.row(place).filter(|_| place < prefix) {
                     Some(row) if !broken => {
                         let item = round.items[place];
-                        if row[0].reading == Reading::Faulty {
+                        if row.iter().any(|cell| cell.reading == Reading::Faulty) {
                             let prepared = self.setup.worlds[share.arm];
                             return Err(crate::engine::trials::trial::fault(
                                 prepared,
@@ -455,11 +404,14 @@ impl<'s> RankSampling<'s> {
                                 self.jobs[0].series,
                             ));
                         }
-                        self.tallies[share.arm].add(item.index, &row[0], self.range);
+                        let first = &row[columns[0]];
+                        self.tallies[share.arm].add(item.index, first, self.range);
                         if let Some(mean) = self.means.get_mut(share.arm) {
-                            mean.observe(value(&row[0]));
+                            mean.observe(value(first));
                         }
-                        cells.push(row[0]);
+                        for (cells, place) in cells.iter_mut().zip(&columns) {
+                            cells.push(row[*place]);
+                        }
                     }
                     _ => broken = true,
                 }

@@ -1,7 +1,7 @@
 //! The empirical distribution function of a metric with its simultaneous band (Dvoretzky, Kiefer and Wolfowitz 1956; Massart
 //! 1990). For `time_until(p)` it is P(F<=t p) over t.
 
-use super::answer::{Answer, Needed, number, with_unit};
+use super::answer::{Answer, Needed, interval, number, with_unit};
 use super::flaw::Flaw;
 use crate::report::svg::frame::Frame;
 use crate::report::svg::picture::Picture;
@@ -14,18 +14,36 @@ const NEEDED: Needed =
 
 pub(super) fn draw(file: &Value, only: Option<&str>) -> Result<Picture, Flaw> {
     let has_one = |results: &[&Value]| {
-        results
-            .iter()
-            .any(|one| one["distribution"]["empirical"].as_array().is_some_and(|all| !all.is_empty()))
+        results.iter().any(|one| {
+            one["distribution"]["empirical"].as_array().is_some_and(|all| !all.is_empty())
+                || one["distribution"]["curve"].is_object()
+        })
     };
     let answer = Answer::of(file, only, NEEDED, has_one)?;
     let frames = answer.results.iter().filter_map(|one| frame(one)).collect();
     Ok(Picture::charts(answer.query, frames))
 }
 
+/// A probability as a function of a bound, with its band.
+fn curve(found: &Value, points: &[Value]) -> Option<Frame> {
+    let all: Vec<(f64, [f64; 3])> =
+        points.iter().map(|point| (number(&point["at"]), interval(point))).collect();
+    let (first, last) = (all.first()?.0, all.last()?.0);
+    let word = |key: &str| found[key].as_str().unwrap_or_default();
+    let axis = with_unit(word("name"), word("unit"));
+    let mut frame =
+        Frame::new([&axis, "probability, with its band"], Scale::linear([first, last]), Scale::shares());
+    frame.band(&all.iter().map(|(x, [low, _, high])| (*x, *low, *high)).collect::<Vec<_>>(), 1);
+    frame.line(all.iter().map(|(x, [_, estimate, _])| (*x, *estimate)), 3);
+    Some(frame)
+}
+
 /// The function of one result; `None` where it has no finite value.
 pub(super) fn frame(result: &Value) -> Option<Frame> {
     let found = &result["distribution"];
+    if let Some(points) = found["curve"]["points"].as_array() {
+        return curve(&found["curve"], points);
+    }
     let steps = found["empirical"].as_array()?;
     // What is infinite is no number in the file: below all values it comes first, above them last.
     let (mut below, mut points) = (0.0, Vec::new());

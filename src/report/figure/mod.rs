@@ -44,7 +44,8 @@ pub fn draw(figure: Figure, file: &Value, only: Option<&str>) -> Result<Picture,
 
 /// The distribution function and the evidence of a result, for its part of a page; empty if it has neither.
 pub(super) fn of_result(result: &Value) -> String {
-    let frames: Vec<_> = distribution::frame(result).into_iter().chain(evidence::frames(result)).collect();
+    let first = ranking::front(result).or_else(|| distribution::frame(result));
+    let frames: Vec<_> = first.into_iter().chain(evidence::frames(result)).collect();
     if frames.is_empty() {
         return String::new();
     }

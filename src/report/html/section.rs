@@ -4,7 +4,7 @@ use super::chart;
 use super::chart::Mark;
 use crate::engine::at_most;
 use crate::engine::outcome::{
-    Histogram, Interval, QueryResult, RankedOption, Shortfall, Side, Verdict, Witness,
+    Histogram, Interval, Kind, QueryResult, RankedOption, Shortfall, Side, Verdict, Witness,
 };
 use crate::report::number::{count, counted, plain};
 use crate::report::palette::Paint;
@@ -118,7 +118,7 @@ pub(super) fn section(
 /// The answer in a few words: the choice, or the number with its interval.
 fn answer(result: &QueryResult) -> String {
     if let Some(ranking) = &result.rank {
-        return ranking.choice.as_ref().map_or("no choice".to_owned(), |choice| format!("choose {choice}"));
+        return phrase::ranked(result, ranking);
     }
     result.value().map_or(String::new(), |value| {
         let (estimate, interval) = text::printed(result, &value);
@@ -139,6 +139,11 @@ fn recommended(result: &QueryResult) -> Option<Recommended> {
     let ranking = result.rank.as_ref()?;
     let plain = |before| Recommended { before, ..Recommended::default() };
     Some(match &ranking.choice {
+        None if ranking.is_empty => plain("No option satisfies the constraints."),
+        None if result.asked.kind == Kind::Pareto && result.consumed.counts.trials > 0 => {
+            let option = phrase::ranked(result, ranking);
+            Recommended { before: "None dominates ", option, after: ".".to_owned() }
+        }
         None if result.consumed.counts.trials > 0 => plain("No choice: no trial is resolved."),
         None => plain("No choice: nothing was sampled."),
         Some(choice) if !result.certifies.is_empty() => {
@@ -205,7 +210,13 @@ fn facts(
 fn marks(result: &QueryResult) -> Vec<Mark> {
     if let Some(ranking) = &result.rank {
         let row = |o: &RankedOption| {
-            let note = format!("{}, {}", o.status.name(), counted(o.counts.trials, "trial"));
+            let also = o.also.iter().map(|also| {
+                let (estimate, interval) = text::in_unit(&also.value, &also.unit);
+                let mark = also.holds.map_or("", |holds| if holds { " satisfied" } else { " violated" });
+                format!(", {}: {estimate} {interval}{mark}", also.what)
+            });
+            let trials = counted(o.counts.trials, "trial");
+            let note = format!("{}, {trials}{}", o.status.name(), also.collect::<String>());
             labelled(result, &o.label, o.value, o.status.into(), &note)
         };
         return ranking.options.iter().map(row).collect();

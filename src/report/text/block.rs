@@ -6,8 +6,8 @@ use super::rows;
 use super::rows::{MARGIN, line, printed};
 use crate::engine::at_most;
 use crate::engine::outcome::{
-    Comparison, Distribution, Histogram, Interval, Kind, QueryResult, Ranking, Rare, Shortfall, Shows, Side,
-    Stop, Verdict, Witness,
+    Comparison, Curve, Distribution, Histogram, Interval, Kind, QueryResult, RankedOption, Ranking, Rare,
+    Shortfall, Shows, Side, Stop, Verdict, Witness,
 };
 use crate::report::number::{brief, clock, count, counted, duration, interval, plain, readable, some};
 use crate::report::palette::{Paint, Palette};
@@ -198,6 +198,10 @@ pub(super) fn cause(result: &QueryResult) -> &'static str {
     let counts = result.consumed.counts;
     match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
+        Stop::Width if result.rank.as_ref().is_some_and(|ranking| ranking.is_empty) => {
+            "stopped when all options were excluded"
+        }
+        Stop::Width if result.asked.kind == Kind::Pareto => "stopped when each option was decided",
         Stop::Width if result.rank.is_some() => "stopped when the choice was certified",
         Stop::Width => "stopped when narrow enough",
         Stop::Unresolved if counts.unresolved == counts.trials => "stopped because all trials are unresolved",
@@ -310,6 +314,21 @@ fn write_comparison(text: &mut String, result: &QueryResult, comparison: &Compar
 
 /// Writes the lines under the head.
 fn write_ranking(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
+    if ranking.is_empty {
+        rows::line(text, "no option satisfies the constraints");
+        return options(text, result, ranking, palette);
+    }
+    if result.asked.kind == Kind::Pareto && result.consumed.counts.trials > 0 {
+        let names: Vec<String> =
+            phrase::front(ranking).map(|label| palette.paint(Paint::Good, label)).collect();
+        let said = if result.certifies.is_empty() {
+            "so far, and not all is decided"
+        } else {
+            "that none dominates"
+        };
+        rows::line(text, &format!("{} {said}: {}", counted(names.len() as u64, "option"), names.join("; ")));
+        return options(text, result, ranking, palette);
+    }
     let Some(choice) = &ranking.choice else {
         let sampled = result.consumed.counts.trials > 0;
         let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
@@ -327,21 +346,30 @@ fn write_ranking(text: &mut String, result: &QueryResult, ranking: &Ranking, pal
         said += "; options marked tied have the same certificate";
     }
     rows::line(text, &said);
-    let rows: Vec<Vec<Cell>> = ranking
-        .options
-        .iter()
-        .map(|option| {
-            let (estimate, interval) = rows::printed(result, &option.value);
-            vec![
-                Cell::left(option.label.clone()),
-                Cell::left(estimate),
-                Cell::left(interval),
-                Cell::right(counted(option.counts.trials, "trial")),
-                Cell::left(option.status.name()).paint(option.status.into()),
-                Cell::left(some(option.counts.unresolved, "unresolved")),
-            ]
-        })
-        .collect();
+    options(text, result, ranking, palette);
+}
+
+/// A row for each option: its score, what was asked besides, its trials and its status.
+fn options(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
+    let row = |option: &RankedOption| {
+        let (estimate, interval) = rows::printed(result, &option.value);
+        let mut row = vec![Cell::left(option.label.clone()), Cell::left(estimate), Cell::left(interval)];
+        for also in &option.also {
+            let (estimate, interval) = rows::in_unit(&also.value, &also.unit);
+            let mark = match also.holds {
+                Some(true) => " satisfied",
+                Some(false) => " violated",
+                None => "",
+            };
+            row.push(Cell::left(format!("{}: {estimate}", also.what)));
+            row.push(Cell::left(format!("{interval}{mark}")));
+        }
+        row.push(Cell::right(counted(option.counts.trials, "trial")));
+        row.push(Cell::left(option.status.name()).paint(option.status.into()));
+        row.push(Cell::left(some(option.counts.unresolved, "unresolved")));
+        row
+    };
+    let rows: Vec<Vec<Cell>> = ranking.options.iter().map(row).collect();
     rows::table(text, &rows, palette);
     rows::intervals(text, result, palette);
 }
@@ -354,6 +382,9 @@ const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█']
 fn write_distribution(text: &mut String, result: &QueryResult, found: &Distribution, palette: Palette) {
     let (unit, size) = readable(&result.unit, result.estimate.unwrap_or(result.low));
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    if let Some(curve) = &found.curve {
+        write_curve(text, curve, palette);
+    }
     // A single one is what was estimated, and stands above.
     if found.quantiles.len() > 1 {
         let parts: Vec<String> = found
@@ -383,6 +414,33 @@ fn write_distribution(text: &mut String, result: &QueryResult, found: &Distribut
         }
         rows::line(text, &said);
     }
+}
+
+/// Most points of a curve in a line.
+const MOST_POINTS: usize = 60;
+
+/// The lines of a curve: its lower end, the estimate and its upper end as bars, and the times at its ends.
+fn write_curve(text: &mut String, curve: &Curve, palette: Palette) {
+    let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return };
+    let count = curve.points.len();
+    let shown = count.min(MOST_POINTS);
+    let place = |k: usize| if shown > 1 { k * (count - 1) / (shown - 1) } else { 0 };
+    let bar =
+        |share: f64| if share <= 0.0 { '·' } else { BARS[(share * 7.0).round().clamp(0.0, 7.0) as usize] };
+    let line = |of: &dyn Fn(&Interval) -> f64| {
+        (0..shown).map(|k| bar(of(&curve.points[place(k)].value))).collect::<String>()
+    };
+    let ends = format!("{} to {} {}", plain(first.at), plain(last.at), curve.unit);
+    let rows: [(&str, String, Paint); 3] = [
+        ("at most", line(&|value| value.high), Paint::Faint),
+        ("estimate", line(&|value| value.estimate), Paint::Neutral),
+        ("at least", line(&|value| value.low), Paint::Faint),
+    ];
+    for (name, bars, paint) in rows {
+        rows::line(text, &format!("{name:<8} {}", palette.paint(paint, &bars)));
+    }
+    let reach = plain((curve.reach * 1000.0).ceil() / 1000.0);
+    rows::line(text, &format!("at {count} bounds from {ends}, the whole curve to ± {reach}"));
 }
 
 /// One bar per bin; an empty bin is a dot, the fullest has full height.

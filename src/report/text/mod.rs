@@ -12,7 +12,7 @@ use crate::report::phrase::{self, certified, settings};
 pub(super) use block::{counts, moment, shown, trials, word};
 use columns::Cell;
 pub(super) use every::lines as under_each;
-pub(super) use rows::printed;
+pub(super) use rows::{in_unit, printed};
 use std::fmt::{self, Write as _};
 
 /// The report of a run, ending with its replay line; if verbose, with the procedure of each query and its numbers.

@@ -28,6 +28,13 @@ pub(super) fn intervals(text: &mut String, result: &QueryResult, palette: Palett
     }
 }
 
+/// A number and its interval, each with its unit, of what has no result of its own.
+pub(in crate::report) fn in_unit(value: &Interval, unit: &str) -> (String, String) {
+    let printed = interval(value, None);
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    (format!("{}{unit}", printed.estimate), format!("{}{unit}", printed.interval))
+}
+
 /// The estimate and its interval, each with its unit. Long times are in minutes or hours.
 pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
     let (unit, size) = readable(&result.unit, result.estimate.unwrap_or(result.low));

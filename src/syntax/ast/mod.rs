@@ -30,8 +30,8 @@ pub use process::{
     SourceDecl, StateDecl, Timing, Transition, Update, VarDecl,
 };
 pub use property::{
-    Binding, Clauses, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind, Ranked,
-    Values,
+    Binding, Clauses, Constraint, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind,
+    Ranked, Values,
 };
 pub use scenario::{
     AgentsDecl, Field, GroupDecl, Item, KindDecl, Leg, LetDecl, MoveOption, MovesDecl, PathsDecl, Recorded,

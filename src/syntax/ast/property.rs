@@ -65,7 +65,9 @@ impl Query {
         let among = |bindings: &[Binding]| bindings.iter().any(|binding| binding.name.name == name);
         let by_kind = match &self.kind {
             QueryKind::Compare { first, second, .. } => among(first) && among(second),
-            QueryKind::Rank { of, .. } => of.values.iter().any(|(own, _)| own.name == name),
+            QueryKind::Rank { of, .. } | QueryKind::Pareto { of, .. } => {
+                of.values.iter().any(|(own, _)| own.name == name)
+            }
             _ => false,
         };
         by_kind
@@ -76,6 +78,7 @@ impl Query {
 
 /// The kinds of queries.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a file has few queries")]
 pub enum QueryKind {
     /// `check P(safe) >= 0.9`
     Check {
@@ -88,6 +91,15 @@ pub enum QueryKind {
     },
     /// `estimate P(a), E(b) in 0 m .. 3 m`
     Estimate(Vec<Measure>),
+    /// `estimate P(F<=t p) for t in 0 s .. 30 s by 0.5 s`
+    Curve {
+        /// The measured quantity.
+        measure: Measure,
+        /// The name of the bound.
+        name: Ident,
+        /// Its values.
+        values: Values,
+    },
     /// `compare P(safe) under density = 0.2 /m^2 with density = 0.8 /m^2`
     Compare {
         /// The measured quantity.
@@ -103,7 +115,27 @@ pub enum QueryKind {
         of: Ranked,
         /// The score.
         measure: Measure,
+        /// `subject to P(together) >= 0.9`
+        subject: Vec<Constraint>,
     },
+    /// `pareto moves of user by P(safe), E(-time) in -60 s .. 0 s`
+    Pareto {
+        /// The options.
+        of: Ranked,
+        /// The aims.
+        measures: Vec<Measure>,
+    },
+}
+
+/// What the options of a ranking have to satisfy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constraint {
+    /// The measured quantity.
+    pub measure: Measure,
+    /// `>=`, `>`, `<=` or `<`.
+    pub relation: super::BinaryOp,
+    /// Compared with this.
+    pub threshold: Expr,
 }
 
 /// The options of a ranking.
@@ -182,7 +214,7 @@ pub struct Measure {
     pub span: Span,
 }
 
-/// Probability, expectation, quantile; a robustness is a metric inside of them.
+/// Probability, expectation, quantile, tail; a robustness is a metric inside of them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeasureKind {
     /// `P(φ)`
@@ -191,6 +223,8 @@ pub enum MeasureKind {
     Expectation,
     /// `Q(level, metric)`
     Quantile(Expr),
+    /// `CVaR(level, metric)`: the mean of what lies above the quantile
+    Tail(Expr),
 }
 
 /// `by sprt(alpha = 0.01, beta = 0.01, indifference = 0.02)`
@@ -209,6 +243,8 @@ pub struct Method {
 pub struct Clauses {
     /// `within 0.01`
     pub within: Option<Expr>,
+    /// The widths of further aims: `within 0.05, 2 s`
+    pub within_others: Vec<Expr>,
     /// `confidence 95 %`
     pub confidence: Option<Expr>,
     /// `by okamoto(…)`

@@ -41,6 +41,7 @@ fn mark(rule: Rule) -> Option<&'static str> {
         Rule::measure_p => "P",
         Rule::measure_e => "E",
         Rule::measure_q => "Q",
+        Rule::measure_c => "CVaR",
         _ => return None,
     })
 }

@@ -4,8 +4,8 @@ use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::property::Every;
 use crate::syntax::ast::{
-    BinaryOp, Binding, Clauses, Ident, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query,
-    QueryKind, Ranked, Values,
+    BinaryOp, Binding, Clauses, Constraint, Ident, Measure, MeasureKind, Method, PropertyFile, PropertyItem,
+    Query, QueryKind, Ranked, Values,
 };
 use crate::syntax::source::Span;
 
@@ -54,6 +54,19 @@ impl Builder<'_> {
                 }
                 QueryKind::Estimate(measures)
             }
+            Rule::curve => {
+                let measure = self.measure(parts.part(Rule::measure)?)?;
+                let name = self.ident(&parts.part(Rule::ident)?);
+                QueryKind::Curve { measure, values: self.values(&name, parts.next()?)?, name }
+            }
+            Rule::pareto => {
+                let of = self.options(&mut parts)?;
+                let mut measures = Vec::new();
+                while let Some(measure) = parts.part(Rule::measure) {
+                    measures.push(self.measure(measure)?);
+                }
+                QueryKind::Pareto { of, measures }
+            }
             Rule::compare => QueryKind::Compare {
                 measure: self.measure(parts.part(Rule::measure)?)?,
                 first: self.bindings(parts.part(Rule::bindings)?)?,
@@ -62,10 +75,25 @@ impl Builder<'_> {
             _ => QueryKind::Rank {
                 of: self.options(&mut parts)?,
                 measure: self.measure(parts.part(Rule::measure)?)?,
+                subject: match parts.part(Rule::subject) {
+                    Some(subject) => {
+                        Parts::of(subject).map(|one| self.constraint(one)).collect::<Option<_>>()?
+                    }
+                    None => Vec::new(),
+                },
             },
         };
         let clauses = self.clauses(parts)?;
         Some(Query { kind, clauses, span })
+    }
+
+    fn constraint(&mut self, pair: Pair<'_>) -> Option<Constraint> {
+        let mut parts = Parts::of(pair);
+        Some(Constraint {
+            measure: self.measure(parts.part(Rule::measure)?)?,
+            relation: relation(&parts.part(Rule::relation)?)?,
+            threshold: self.expr(parts.part(Rule::arith)?),
+        })
     }
 
     /// What a ranking chooses from.
@@ -118,10 +146,10 @@ impl Builder<'_> {
     fn measure(&mut self, pair: Pair<'_>) -> Option<Measure> {
         let mut measures = self.measures(pair)?;
         if let Some(second) = measures.get(1)
-            && let MeasureKind::Quantile(level) = &second.kind
+            && let MeasureKind::Quantile(level) | MeasureKind::Tail(level) = &second.kind
         {
             self.say(error!(E0124, level.span, "only one level is allowed here";
-                    hint: "several quantiles can only be estimated: `estimate Q(0.5, 0.9, …)`"));
+                    hint: "several levels can only be estimated: `estimate Q(0.5, 0.9, …)`"));
             return None;
         }
         measures.pop()
@@ -132,7 +160,7 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let pair = pair.into_inner().next()?;
         let rule = pair.as_rule();
-        // `P`, `E` and `Q` are marks of a kind, but stand first.
+        // `P`, `E`, `Q` and `CVaR` are marks of a kind, but stand first.
         let mut parts = Parts::of(pair);
         parts.next()?;
         let kinds = match rule {
@@ -141,7 +169,13 @@ impl Builder<'_> {
             _ => {
                 let mut levels = Vec::new();
                 while let Some(level) = parts.part(Rule::arith) {
-                    levels.push(MeasureKind::Quantile(self.expr(level)));
+                    let level = self.expr(level);
+                    let is_tail = rule == Rule::tail;
+                    levels.push(if is_tail {
+                        MeasureKind::Tail(level)
+                    } else {
+                        MeasureKind::Quantile(level)
+                    });
                 }
                 levels
             }
@@ -174,7 +208,11 @@ impl Builder<'_> {
             let rule = clause.as_rule();
             let mut parts = Parts::of(clause);
             let twice = match rule {
-                Rule::within => clauses.within.replace(self.expr(parts.part(Rule::arith)?)).is_some(),
+                Rule::within => {
+                    let twice = clauses.within.replace(self.expr(parts.part(Rule::arith)?)).is_some();
+                    clauses.within_others.extend(parts.map(|other| self.expr(other)));
+                    twice
+                }
                 Rule::confidence => clauses.confidence.replace(self.expr(parts.part(Rule::arith)?)).is_some(),
                 Rule::method => {
                     let name = self.ident(&parts.part(Rule::name)?);

@@ -141,6 +141,7 @@ impl Collector<'_, '_> {
                         | Rule::probability
                         | Rule::expectation
                         | Rule::quantile
+                        | Rule::tail
                         | Rule::method
                 );
                 (called, true)
