@@ -6,7 +6,7 @@ use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::base::tick::Clock;
 use crate::compile::Written;
 use crate::compile::methods::PLANNED_TRIALS;
-use crate::compile::study::{Ask, MeasureKind, Study, World};
+use crate::compile::study::{Ask, MeasureKind, Role, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{
@@ -436,7 +436,27 @@ fn procedure(ask: &Ask) -> String {
             };
             format!("difference {trials}, error {}, common random numbers", at_most(*delta))
         }
-        Ask::Rank { ranking, .. } => summary(ranking),
+        Ask::Rank { ranking, measure, beside, .. } => {
+            let (epsilon, error) = (number(ranking.value("epsilon")), at_most(ranking.value("delta")));
+            let (mut aims, mut constraints) = (vec![epsilon.clone()], Vec::new());
+            for one in beside {
+                match &one.role {
+                    Role::Constraint { text, .. } => constraints.push(format!("{} {text}", one.said)),
+                    Role::Aim { epsilon } => aims.push(number(*epsilon)),
+                }
+            }
+            match (constraints.is_empty(), beside.is_empty()) {
+                (false, _) => {
+                    let all = constraints.join(" and ");
+                    format!("best within {epsilon} of those with {all}, error {error}: paired betting")
+                }
+                (true, false) => format!("front, widths {}, error {error}: paired betting", aims.join(", ")),
+                (true, true) if measure.kind.share().is_some() => {
+                    format!("best within {epsilon}, error {error}: joint intervals")
+                }
+                (true, true) => summary(ranking),
+            }
+        }
     }
 }
 

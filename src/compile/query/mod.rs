@@ -18,6 +18,7 @@ pub(crate) mod settings;
 pub(crate) mod starts;
 pub(crate) mod sweeps;
 pub(crate) mod titles;
+pub(crate) mod watched;
 
 use crate::base::decimal::Decimal;
 use crate::compile::context::{

@@ -42,6 +42,7 @@ pub struct Constrained {
     /// Arms that are worse than one that satisfies the constraints.
     dropped: Vec<bool>,
     threshold: f64,
+    epsilon: f64,
     word: u64,
     deviations: Vec<f64>,
     scale: f64,
@@ -81,6 +82,7 @@ impl Constrained {
             feasible: vec![None; arms],
             dropped: vec![false; arms],
             threshold: math::ln(rivals / half) + 1e-9,
+            epsilon,
             word,
             scale: high - low,
             leader: 0,
@@ -157,7 +159,10 @@ impl Constrained {
         let key = |arm: usize| (self.aim.trials(arm) > 0, seems(arm), self.feasible[arm] == Some(true));
         (0..self.feasible.len()).filter(|arm| self.is_live(*arm)).max_by(|&a, &b| {
             let (one, other) = (key(a), key(b));
-            let by_score = self.aim.estimate(a).total_cmp(&self.aim.estimate(b));
+            // Half of what does not matter keeps an arm ahead that certainly satisfies the constraints: another one may never.
+            let sure = |arm: usize| if self.feasible[arm] == Some(true) { 0.5 * self.epsilon } else { 0.0 };
+            let score = |arm: usize| self.aim.estimate(arm) + sure(arm);
+            let by_score = score(a).total_cmp(&score(b));
             let by_deviation = self.deviations[b].total_cmp(&self.deviations[a]);
             (one.0, one.1)
                 .cmp(&(other.0, other.1))
