@@ -273,6 +273,7 @@ fn with_moves(agent: Agent) -> Program {
     let mut scenario = scenario(vec![agent]);
     let other = Moves {
         agent: AgentId(0),
+        others: Vec::new(),
         duration: Tick(5),
         options: vec![("stop".into(), Move::Stop)],
         routes: Vec::new(),
@@ -281,7 +282,14 @@ fn with_moves(agent: Agent) -> Program {
     let options = vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))];
     scenario.moves = vec![
         other,
-        Moves { agent: AgentId(0), duration: Tick(100), options, routes: Vec::new(), paths: None },
+        Moves {
+            agent: AgentId(0),
+            others: Vec::new(),
+            duration: Tick(100),
+            options,
+            routes: Vec::new(),
+            paths: None,
+        },
     ];
     Program::new(Arc::new(scenario))
 }
@@ -354,8 +362,14 @@ fn lanes_do_not_see_one_another() {
     ];
     let mut scenario = scenario(agents);
     let options = vec![("left".into(), Move::Heading(0.5))];
-    scenario.moves =
-        vec![Moves { agent: AgentId(0), duration: Tick(30), options, routes: Vec::new(), paths: None }];
+    scenario.moves = vec![Moves {
+        agent: AgentId(0),
+        others: Vec::new(),
+        duration: Tick(30),
+        options,
+        routes: Vec::new(),
+        paths: None,
+    }];
     let program = Program::new(Arc::new(scenario));
     let mut together = State::new(program.layout, 4);
     // Lanes start at different times and with different advice.

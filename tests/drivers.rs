@@ -71,6 +71,7 @@ fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
         groups: Vec::new(),
         moves: vec![Moves {
             agent: AgentId(0),
+            others: Vec::new(),
             duration: Tick(25),
             options: vec![("stop".to_owned(), Move::Stop)],
             routes: Vec::new(),

@@ -345,8 +345,8 @@ fn moves_of_two_agents_are_ranked_together() {
     assert!((a[0] - 2.5).abs() < 1e-9 && a[1] < 3.2 && b[1] < 8.0, "{table}");
     for (text, said) in [
         ("rank moves of a, moves of a by P(true)\n", "listed twice"),
-        ("rank moves of a, moves of b, moves of a by P(true)\n", "at most two agents"),
-        ("rank moves of a, paths of b by P(true)\n", "paths cannot be combined"),
+        ("rank moves of a, moves of b, moves of a by P(true)\n", "listed twice"),
+        ("rank moves of a, paths of b by P(true)\n", "the scenario declares no paths for `b`"),
     ] {
         place.write("a.bltl", text.as_bytes());
         let found = place.call(&["check", "a.scn", "a.bltl", "-q"]);
@@ -354,6 +354,55 @@ fn moves_of_two_agents_are_ranked_together() {
     }
     let unknown = place.call(&["simulate", "a.scn", "--move", "a: stop and c: stop"]);
     assert!(unknown.code == Some(2) && unknown.err.contains("unknown moves"), "{}", unknown.err);
+}
+
+/// Three agents, of whom one chooses among paths: all combinations, each with its name and its command.
+#[test]
+fn paths_and_moves_of_three_agents_are_ranked_together() {
+    let scenario = "horizon = 20 s\nstep = 0.02 s\n\
+        scene { wall (0, 0) -- (12, 0); wall (0, 6) -- (12, 6); obstacle block: rect (5, 2) .. (7, 4)\n\
+        region east: rect (10, 0) .. (12, 6); region west: rect (0, 0) .. (2, 6) }\n\
+        kind planner: planned { roadmap = prm(samples = 300); limit speed = 1.4 m/s }\n\
+        kind cart: sfm preset helbing2000 { speed = 1.2 m/s; noise = 0 m/s }\n\
+        agent a: planner { at = (1, 3); route = east }\n\
+        agent b: cart { at = (11, 3); route = west }\nagent c: cart { at = (11, 1); route = west }\n\
+        paths a { roadmap alternatives 2 }\nmoves b for 20 s { stop }\nmoves c for 20 s { stop }\n";
+    let ask = "rank paths of a, moves of b, moves of c by P(F<=15 s (a in east) & G<=9 s (distance(b, c) > 1 m)) within 0.2\n";
+    let result = &results(scenario, ask, &[])[0];
+    let all = labels(result);
+    assert_eq!(all.len() % 4, 0, "{all:?}");
+    assert!(all.iter().all(|label| label.starts_with("a: path ") && label.contains(" and c: ")), "{all:?}");
+    let command = result["witnesses"][0]["command"].as_str().unwrap();
+    assert!(command.contains(&format!("--move '{}'", result["choice"].as_str().unwrap())), "{command}");
+}
+
+/// The moves of a group that is simulated member by member: all of them take the same option, each from its own direction.
+#[test]
+fn the_moves_of_a_group_are_those_of_all_its_members() {
+    let scenario = "horizon = 6 s\nstep = 0.02 s\nscene { region east: rect (20, 0) .. (22, 8) }\n\
+        kind calm: sfm preset helbing2000 { A = 0 N; noise = 0 m/s }\n\
+        group party[3]: calm { at = uniform in rect (1, 2) .. (3, 5); route = east; attraction = 0 N }\n\
+        agents crowd[2]: calm { at = uniform in rect (8, 2) .. (9, 5); route = (0, 3) }\n\
+        moves party for 5 s { heading 90 deg; stop }\n";
+    let ask = "rank moves of party by P(G<=4 s (forall a in party: travelled(a) < 0.5 m)) within 0.1\n";
+    let result = &results(scenario, ask, &[])[0];
+    assert_eq!(result["choice"], "stop", "{result:#}");
+    assert_eq!(labels(result).len(), 3);
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", ask)]);
+    let table = place.call(&["simulate", "a.scn", "--move", "heading 90 deg", "--every", "200"]).out;
+    for name in ["party[1]", "party[2]", "party[3]"] {
+        let rows = table.lines().filter(|line| line.split(',').nth(2) == Some(name));
+        let y: Vec<f64> = rows.map(|line| line.split(',').nth(4).unwrap().parse().unwrap()).collect();
+        assert!(y[1] - y[0] > 3.0, "{name}: {y:?}");
+    }
+    for (text, said) in [
+        ("rank moves of party[1] by P(true)\n", "declares no moves for `party[1]`"),
+        ("rank moves of crowd by P(true)\n", "expected an agent"),
+    ] {
+        place.write("a.bltl", text.as_bytes());
+        let found = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+        assert!(found.code == Some(2) && found.err.contains(said), "{text}{}", found.err);
+    }
 }
 
 /// Moves and values together: every combination is an option, under one certificate, and its witness repeats it.

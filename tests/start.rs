@@ -195,6 +195,7 @@ fn an_agent_more_and_a_move_change_nobody_elses_start() {
     more.agents.insert(4, agent(999, Position::Point(p(5.0, 2.0))));
     more.moves.push(Moves {
         agent: AgentId(0),
+        others: Vec::new(),
         duration: Tick(100),
         options: vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))],
         routes: Vec::new(),

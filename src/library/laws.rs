@@ -24,7 +24,8 @@ pub(super) fn missing(study: &Study, only: &[usize]) -> Option<Diagnostic> {
     asked.flat_map(|query| query.ask.worlds()).find_map(|at| {
         let world = study.worlds.get(at)?;
         let scenario = &world.scenario;
-        let is_moved = |id: AgentId| scenario.moves.iter().any(|moves| moves.agent == id);
+        let is_moved =
+            |id: AgentId| scenario.moves.iter().any(|moves| moves.agents().any(|agent| agent == id));
         let mut ids = (0..scenario.agents.len() as u32).map(AgentId);
         let agent = ids.find(|&id| goes_on_as_seen(&scenario.agents[id.0 as usize]) && !is_moved(id))?;
         let ahead = world.columns.iter().filter_map(|column| seconds(world, column.root.part()));

@@ -88,26 +88,27 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
             };
             errors.push(error.hint(hint));
         }
-        let moves = &world.scenario.moves;
+        let scenario = &world.scenario;
         for query in &mut study.queries {
             let Ask::Rank { options, .. } = &mut query.ask else { continue };
-            let of_path = |option: &RankOption| {
-                let here = option.advice.filter(|_| option.target.world == number);
-                here.filter(|(of, _)| moves.get(*of).is_some_and(|moves| moves.paths.is_some()))
-            };
+            let here = |option: &RankOption| option.advice.filter(|_| option.target.world == number);
             // Under every value of a parameter a path stands in several worlds; one of them without it has none to rank.
-            let missing: Vec<_> = options
-                .iter()
-                .filter_map(of_path)
-                .filter(|(of, k)| moves[*of].options.get(*k).is_none())
-                .collect();
+            let is_missing = |advice: &(usize, usize)| scenario.singles(*advice).is_none();
+            let missing: Vec<_> = options.iter().filter_map(here).filter(is_missing).collect();
             options.retain(|option| option.advice.is_none_or(|advice| !missing.contains(&advice)));
             for option in options {
-                let Some((of, k)) = of_path(option) else { continue };
+                let Some(advice) = here(option) else { continue };
+                let singles = scenario.singles(advice).into_iter().flatten().flatten();
+                let mut of_paths = singles.filter(|(of, _)| scenario.moves[*of].paths.is_some());
+                let Some((of, k)) = of_paths.next() else { continue };
+                let moves = &scenario.moves[of];
+                let is_alone = (of, k) == advice;
+                let label =
+                    if is_alone { Some(moves.options[k].0.clone()) } else { scenario.move_name(advice) };
                 let values = option.settings.iter().map(|(name, value)| format!(", {name} = {value}"));
-                option.label = moves[of].options[k].0.clone() + &values.collect::<String>();
-                if option.settings.is_empty() {
-                    option.deviation = moves[of].deviations()[k];
+                option.label = label.unwrap_or_default() + &values.collect::<String>();
+                if option.settings.is_empty() && is_alone {
+                    option.deviation = moves.deviations()[k];
                 }
             }
         }

@@ -1,13 +1,15 @@
 //! Moves: what a helper may suggest to an agent.
 
-use super::agent::{AgentId, Route};
+use super::agent::{Agent, AgentId, Route};
 use crate::base::tick::Tick;
 
 /// The options of one agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moves {
-    /// Whose.
+    /// Whose; of a group its first member.
     pub agent: AgentId,
+    /// The other members of a group, who all take the same option.
+    pub others: Vec<AgentId>,
     /// For how long a heading or a stop holds; then the route goes on.
     pub duration: Tick,
     /// The options.
@@ -19,6 +21,17 @@ pub struct Moves {
 }
 
 impl Moves {
+    /// Everybody who takes an option.
+    pub fn agents(&self) -> impl Iterator<Item = AgentId> {
+        std::iter::once(self.agent).chain(self.others.iter().copied())
+    }
+
+    /// The name of the one whose they are, or of the group: `party` of `party[1]`.
+    pub fn owner<'n>(&self, agents: &'n [Agent]) -> Option<&'n str> {
+        let name = agents.get(self.agent.0 as usize)?.name.as_str();
+        Some(if self.others.is_empty() { name } else { name.split('[').next().unwrap_or(name) })
+    }
+
     /// Whose they are and whether they are paths, and in a word what they are.
     pub fn key(&self) -> ((AgentId, bool), &'static str) {
         let what = if self.paths.is_some() { "paths" } else { "moves" };

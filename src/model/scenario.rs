@@ -33,6 +33,10 @@ pub struct Scenario {
     pub sources: Vec<Source>,
 }
 
+/// Most agents whose moves are followed at once, and most options of each.
+const MOST_TOGETHER: usize = 4;
+const MOST_MOVES: usize = 1 << 12;
+
 impl Scenario {
     /// All routes that somebody may take: own ones, those of behaviours, and those among moves.
     pub fn routes(&self) -> impl Iterator<Item = &Route> {
@@ -42,40 +46,57 @@ impl Scenario {
         own.chain(modes.filter_map(|mode| mode.route.as_ref())).chain(named)
     }
 
-    /// The number of two moves of two agents at once: pairs of declarations are numbered behind the single ones, and pairs of
-    /// options row by row.
-    pub fn both(&self, first: (usize, usize), second: (usize, usize)) -> Option<(usize, usize)> {
-        let count = self.moves.get(second.0)?.options.len();
-        Some((self.moves.len() * (1 + first.0) + second.0, first.1 * count + second.1))
+    /// The number of several moves at once, each with its declaration and option: a digit for each of them, the first the
+    /// lowest. One alone is its own number; `None` if they are too many.
+    pub fn together(&self, moves: &[(usize, usize)]) -> Option<(usize, usize)> {
+        let base = self.moves.len() + 1;
+        match moves {
+            [one] => Some(*one),
+            [] => None,
+            all if all.len() > MOST_TOGETHER || all.iter().any(|(_, option)| *option >= MOST_MOVES) => None,
+            all => Some(all.iter().rev().fold((0, 0), |number, (declaration, option)| {
+                (number.0 * base + declaration + 1, number.1 * MOST_MOVES + option)
+            }))
+            .map(|(declarations, option)| (self.moves.len() + declarations, option)),
+        }
     }
 
-    /// The moves, one or two, that a number stands for, each with its declaration and option; `None` if there are none.
-    pub fn singles(&self, (declaration, option): (usize, usize)) -> Option<[Option<(usize, usize)>; 2]> {
-        let all = self.moves.len();
+    /// The moves that a number stands for, each with its declaration and option; `None` if there are none.
+    pub fn singles(
+        &self,
+        (declaration, option): (usize, usize),
+    ) -> Option<[Option<(usize, usize)>; MOST_TOGETHER]> {
+        let (all, base) = (self.moves.len(), self.moves.len() + 1);
         let known = |(at, option): (usize, usize)| {
             self.moves.get(at).filter(|moves| option < moves.options.len()).map(|_| (at, option))
         };
+        let mut singles = [None; MOST_TOGETHER];
         if declaration < all {
-            return Some([Some(known((declaration, option))?), None]);
+            singles[0] = Some(known((declaration, option))?);
+            return Some(singles);
         }
-        let (first, second) = ((declaration - all).checked_div(all)?, (declaration - all) % all);
-        let count = self.moves.get(second)?.options.len().max(1);
-        Some([Some(known((first, option / count))?), Some(known((second, option % count))?)])
+        let (mut declarations, mut options) = (declaration - all, option);
+        for single in &mut singles {
+            if declarations == 0 {
+                break;
+            }
+            *single = Some(known(((declarations % base).checked_sub(1)?, options % MOST_MOVES))?);
+            (declarations, options) = (declarations / base, options / MOST_MOVES);
+        }
+        (declarations == 0 && singles[1].is_some()).then_some(singles)
     }
 
     /// The name by which an option of a declaration of moves is chosen: its own, `stop`, or with whose it is, `user: stop`,
-    /// where several people have one of that name; of two agents both, `a: stop and b: own way`.
+    /// where several people have one of that name; of several agents all, `a: stop and b: own way`.
     pub fn move_name(&self, advice: (usize, usize)) -> Option<String> {
-        if let [Some(first), Some(second)] = self.singles(advice)? {
+        let singles = self.singles(advice)?;
+        if singles[1].is_some() {
             let named = |(declaration, option): (usize, usize)| {
                 let moves = &self.moves[declaration];
-                Some(format!(
-                    "{}: {}",
-                    self.agents.get(moves.agent.0 as usize)?.name,
-                    moves.options[option].0
-                ))
+                Some(format!("{}: {}", moves.owner(&self.agents)?, moves.options[option].0))
             };
-            return Some(format!("{} and {}", named(first)?, named(second)?));
+            let names: Option<Vec<String>> = singles.into_iter().flatten().map(named).collect();
+            return Some(names?.join(" and "));
         }
         let (declaration, option) = advice;
         let moves = self.moves.get(declaration)?;
@@ -85,6 +106,6 @@ impl Scenario {
         if !self.moves.iter().enumerate().any(same) {
             return Some(label.clone());
         }
-        Some(format!("{}: {label}", self.agents.get(moves.agent.0 as usize)?.name))
+        Some(format!("{}: {label}", moves.owner(&self.agents)?))
     }
 }

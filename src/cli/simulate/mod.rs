@@ -214,18 +214,19 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), Diagnostic>
     if let Some(found) = all().find(|of| scenario.move_name(*of).is_some_and(|name| is_meant(&name))) {
         return Ok(found);
     }
-    // `a: stop and b: own way`: the moves of two agents at once.
-    if let Some((first, second)) = wanted.split_once(" and ") {
+    // `a: stop and b: own way`: the moves of several agents at once.
+    if wanted.contains(" and ") {
         let single = |wanted: &str| {
             all().find(|(declaration, at)| {
                 let moves = &scenario.moves[*declaration];
-                let owner = &scenario.agents[moves.agent.0 as usize].name;
-                wanted == format!("{owner}: {}", moves.options[*at].0)
+                moves
+                    .owner(&scenario.agents)
+                    .is_some_and(|owner| wanted == format!("{owner}: {}", moves.options[*at].0))
             })
         };
-        let pair = single(first).zip(single(second));
-        return pair.and_then(|(first, second)| scenario.both(first, second)).ok_or_else(|| {
-            let hint = "write the moves of two agents, such as `robot: stop and cart: own way`";
+        let singles: Option<Vec<(usize, usize)>> = wanted.split(" and ").map(single).collect();
+        return singles.and_then(|singles| scenario.together(&singles)).ok_or_else(|| {
+            let hint = "write the moves of several agents, such as `robot: stop and cart: own way`";
             complaint::argument(format!("unknown moves `{wanted}`"), hint)
         });
     }

@@ -114,7 +114,7 @@ pub(crate) fn all_moves<'a>(
 
 /// `moves user for 2 s { … }`
 fn lower_moves<'a>(context: &mut Context<'a>, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
-    let agent = advised_agent(context, (&decl.agent, decl.member.as_ref()), "moves", people);
+    let agents = advised_agents(context, (&decl.agent, decl.member.as_ref()), "moves", people);
     let duration = context.time(&decl.duration, &Locals::default());
     let mut options: Vec<(String, Move)> = Vec::new();
     let mut routes: Vec<Route> = Vec::new();
@@ -122,7 +122,8 @@ fn lower_moves<'a>(context: &mut Context<'a>, decl: &'a MovesDecl, people: &Peop
     for option in &decl.options {
         failed |= lower_option(context, option, &mut options, &mut routes).is_err();
     }
-    let agent = agent?;
+    let agents = agents?;
+    let [agent, others @ ..] = agents.as_slice() else { return Err(Reported) };
     let Some(duration) = duration? else {
         return context.report(error!(E0406, decl.duration.span, "the duration of a move must be finite"));
     };
@@ -139,12 +140,12 @@ fn lower_moves<'a>(context: &mut Context<'a>, decl: &'a MovesDecl, people: &Peop
     }
     // The agent's own way is always an option.
     options.insert(0, ("own way".to_owned(), Move::Own));
-    Ok(Moves { agent, duration, options, routes, paths: None })
+    Ok(Moves { agent: *agent, others: others.to_vec(), duration, options, routes, paths: None })
 }
 
 /// `paths people[1] { roadmap alternatives 4 }`: which paths there are is known when the roadmap is drawn.
 fn lower_paths<'a>(context: &mut Context<'a>, decl: &'a PathsDecl, people: &People) -> Lowered<Moves> {
-    let agent = advised_agent(context, (&decl.agent, decl.member.as_ref()), "paths", people);
+    let agents = advised_agents(context, (&decl.agent, decl.member.as_ref()), "paths", people);
     let number = context.number_of(&decl.alternatives, Dimension::NONE, &Locals::default())?;
     let Some(most) = number.as_whole().filter(|n| (1..=MOST_PATHS).contains(n)) else {
         let said = format!(
@@ -153,7 +154,7 @@ fn lower_paths<'a>(context: &mut Context<'a>, decl: &'a PathsDecl, people: &Peop
         );
         return context.report(error!(E0406, decl.alternatives.span, "{said}"));
     };
-    let agent = agent?;
+    let [agent] = agents?[..] else { return Err(Reported) };
     if people.agents[agent.0 as usize].body.planner.is_none() {
         let said = format!("`{}` does not plan, and has no paths", people.agents[agent.0 as usize].name);
         let error = error!(E0406, decl.agent.span, "{said}");
@@ -162,16 +163,23 @@ fn lower_paths<'a>(context: &mut Context<'a>, decl: &'a PathsDecl, people: &Peop
         );
     }
     let options = (0..most as u32).map(|k| (format!("path {}", k + 1), Move::Path(k))).collect();
-    Ok(Moves { agent, duration: Tick(0), options, routes: Vec::new(), paths: Some(Vec::new()) })
+    Ok(Moves {
+        agent,
+        others: Vec::new(),
+        duration: Tick(0),
+        options,
+        routes: Vec::new(),
+        paths: Some(Vec::new()),
+    })
 }
 
-/// The one agent that moves or paths belong to.
-fn advised_agent(
+/// The one agent that moves or paths belong to; or, of moves, all members of a group that is simulated one by one.
+fn advised_agents(
     context: &mut Context<'_>,
     (name, member): (&Ident, Option<&Expr>),
     what: &str,
     people: &People,
-) -> Lowered<AgentId> {
+) -> Lowered<Vec<AgentId>> {
     let plain = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
     let expr = match member {
         Some(member) => Expr {
@@ -193,14 +201,22 @@ fn advised_agent(
             Some(format!("the scenario declares {}", names.join(", "))).filter(|_| !names.is_empty());
     }
     let typed = lowered?;
+    let group_of = |agent: AgentId| people.agents.get(agent.0 as usize).and_then(|agent| agent.group);
+    if let Typed::Agents { set, particle: false } = &typed
+        && what == "moves"
+        && let Some(group) = set.members.first().and_then(|agent| group_of(*agent))
+        && set.members.iter().all(|agent| group_of(*agent) == Some(group))
+    {
+        return Ok(set.members.to_vec());
+    }
     let is_one = matches!(&typed, Typed::Agents { set, particle: true } if set.members.len() == 1);
     if matches!(typed, Typed::Agents { .. }) && !is_one {
         let said = format!("{what} must belong to one agent");
         return context.report(error!(E0406, expr.span, "{said}";
-                hint: "write one member, such as `{}[1]`, or declare a single agent: `agent user: …`", name.name));
+                hint: "write one member or a group, such as `{}[1]`, or declare a single agent: `agent user: …`", name.name));
     }
     match context.as_agent(typed, expr.span)? {
-        Who::Agent(agent) if people.agents.get(agent.0 as usize).is_some() => Ok(agent),
+        Who::Agent(agent) if people.agents.get(agent.0 as usize).is_some() => Ok(vec![agent]),
         _ => Err(Reported),
     }
 }

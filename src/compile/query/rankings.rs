@@ -1,6 +1,8 @@
 //! Rankings: their options, each of which is a world and perhaps a move in it, their score and their procedure.
 
-use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, symbols::ScopeId};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, number::Number, symbols::ScopeId, typed::Typed,
+};
 use crate::compile::query::{
     aims::{self, Others},
     bindings,
@@ -14,7 +16,7 @@ use crate::compile::query::{
 use crate::compile::study::{Ask, MeasureKind, Query, RankOption};
 use crate::logic::Root;
 use crate::logic::Tree;
-use crate::model::{AgentId, Bool, Move, Num, Who};
+use crate::model::{AgentId, Bool, Move, Num, Set, Who};
 use crate::stats::ranking::Ranking;
 use crate::stats::spec::Make;
 use crate::syntax::ast::{self, Clauses, Expr, Ident, Ranked, Values};
@@ -125,43 +127,53 @@ pub(crate) fn rank<'a>(
     Ok((Ask::Rank { options, measure: first, ranking, models: 1, beside }, unbounded, world))
 }
 
-/// The options of the moves of one agent, or all pairs of moves of two, in a world. Errors are those of `site`.
+/// The options of the moves of one agent, or all combinations of those of several, in a world. Errors are those of `site`.
 fn together(
     compiler: &mut Compiler<'_>,
     (site, world): (usize, usize),
     moved: &[(Ident, Expr)],
     locals: &Locals,
 ) -> Lowered<Vec<Candidate>> {
-    let [(what, agent), rest @ ..] = moved else { return Err(Reported) };
-    let first = moves(compiler, world, what, agent, locals)?;
-    let Some((other_what, other)) = rest.first() else { return Ok(first) };
-    let context = &mut compiler.sites[site].context;
-    if let Some((third, _)) = rest.get(1) {
-        let error = error!(E0606, third.span, "a ranking combines the moves of at most two agents");
-        return context.report(error);
+    let each: Vec<_> =
+        moved.iter().map(|(what, agent)| moves(compiler, world, what, agent, locals)).collect();
+    let each: Vec<Vec<Candidate>> = each.into_iter().collect::<Lowered<_>>()?;
+    let [(what, _), ..] = moved else { return Err(Reported) };
+    if each.len() == 1 {
+        return Ok(each.into_iter().flatten().collect());
     }
-    if let Some(paths) = [what, other_what].into_iter().find(|what| what.name == "paths") {
-        let error = error!(E0606, paths.span, "paths cannot be combined with moves of another agent");
-        return context.report(error);
-    }
-    let second = moves(compiler, world, other_what, other, locals)?;
     let declaration = |all: &[Candidate]| all.first().and_then(|one| one.advice).map(|(at, _)| at);
-    if declaration(&first) == declaration(&second) {
-        let error = error!(E0606, other.span, "the moves of one agent are listed twice");
-        return compiler.sites[site].context.report(error.hint("name another agent"));
+    for (k, (_, agent)) in moved.iter().enumerate() {
+        if each[..k].iter().any(|known| declaration(known) == declaration(&each[k])) {
+            let error = error!(E0606, agent.span, "the moves of one agent are listed twice");
+            return compiler.sites[site].context.report(error.hint("name another agent"));
+        }
+    }
+    let count = each.iter().map(Vec::len).fold(1, usize::saturating_mul);
+    if count > MOST_OPTIONS {
+        let said = format!("a ranking has at most {MOST_OPTIONS} options (got {count})");
+        return compiler.sites[site].context.report(error!(E0606, what.span, "{said}"));
+    }
+    // Those of the first agent slowest.
+    let mut rows: Vec<Vec<(usize, usize)>> = vec![Vec::new()];
+    for all in &each {
+        let own: Vec<(usize, usize)> = all.iter().filter_map(|one| one.advice).collect();
+        rows = rows.iter().flat_map(|row| own.iter().map(|one| [row.as_slice(), &[*one]].concat())).collect();
     }
     let Some(scenario) = &compiler.sites[world].scenario else { return Err(Reported) };
-    let pairs = first.iter().flat_map(|one| second.iter().map(move |two| (one, two)));
-    let pair = |(k, (one, two)): (usize, (&Candidate, &Candidate))| {
-        let advice = scenario.both(one.advice?, two.advice?)?;
+    let candidate = |(k, row): (usize, &Vec<(usize, usize)>)| {
+        let advice = scenario.together(row)?;
         let label = scenario.move_name(advice)?;
         Some(Candidate { world, label, settings: Vec::new(), advice: Some(advice), deviation: k as f64 })
     };
-    let all: Vec<Candidate> = pairs.enumerate().filter_map(pair).collect();
-    if all.len() > MOST_OPTIONS {
-        let said = format!("a ranking has at most {MOST_OPTIONS} options (got {})", all.len());
-        return compiler.sites[site].context.report(error!(E0606, what.span, "{said}"));
-    }
+    let all: Option<Vec<Candidate>> = rows.iter().enumerate().map(candidate).collect();
+    let Some(all) = all else {
+        let error = error!(
+            E0606,
+            moved[moved.len() - 1].0.span,
+            "a ranking combines the moves of at most four agents"
+        );
+        return compiler.sites[site].context.report(error);
+    };
     Ok(all)
 }
 
@@ -183,7 +195,15 @@ fn moves(
         context.report(error)
     };
     let typed = context.lower(agent, locals)?;
-    let Who::Agent(id) = context.as_agent(typed, agent.span)? else { return Err(Reported) };
+    let all = match typed {
+        Typed::Agents { set, particle: false } if !paths && is_advised(context, &set) => set.members,
+        typed => match context.as_agent(typed, agent.span)? {
+            Who::Agent(id) => [id].into(),
+            Who::Running(_) => return Err(Reported),
+        },
+    };
+    // A group is known by its first member.
+    let id = all[0];
     wanted?;
     let advised = &compiler.sites[site].context.roster.advised;
     // If some moves have errors, their agents are unknown.
@@ -195,6 +215,9 @@ fn moves(
         return Err(Reported);
     };
     let moves = &scenario.moves[number];
+    if !moves.agents().eq(all.iter().copied()) {
+        return without_moves(&mut compiler.sites[site].context, (id, paths), agent.span);
+    }
     let all = moves.options.iter().zip(moves.deviations()).enumerate();
     let candidate = |(k, ((label, _), deviation)): (usize, (&(String, Move), f64))| Candidate {
         world: site,
@@ -204,6 +227,16 @@ fn moves(
         deviation,
     };
     Ok(all.map(candidate).collect())
+}
+
+/// Whether moves are declared for all of a set, by its first member.
+fn is_advised(context: &Context<'_>, set: &Set) -> bool {
+    let first = set.members.first().map(|first| (*first, false));
+    set.except.is_none()
+        && set.members.len() > 1
+        && first.is_some_and(|first| {
+            context.roster.advised.as_ref().is_none_or(|advised| advised.contains(&first))
+        })
 }
 
 /// The worlds of some options, each once, in their order.

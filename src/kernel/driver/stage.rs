@@ -177,8 +177,9 @@ impl Drive {
         for moves in &scenario.moves {
             let is_route = |option: &&(String, Move)| matches!(option.1, Move::Route(_));
             let names = moves.options.iter().filter(is_route).map(|(label, _)| label);
-            let stages = names.zip(&moves.routes).map(|(name, route)| out.detour(route, name)).collect();
-            out.named.push((moves.agent, stages));
+            let stages: Vec<u32> =
+                names.zip(&moves.routes).map(|(name, route)| out.detour(route, name)).collect();
+            out.named.extend(moves.agents().map(|agent| (agent, stages.clone())));
         }
         out
     }

@@ -44,17 +44,20 @@ pub fn load(
         return Ok(Loaded::default());
     }
     let advised = match advice {
-        None => [None; 2],
+        None => Default::default(),
         Some((declaration, option)) => {
             let singles = scenario.singles((declaration, option));
-            let heeded = |(declaration, option): (usize, usize)| {
-                let moves = &scenario.moves[declaration];
-                let agent = moves.agent.0 as usize;
-                let is_heeded = program.behaviours.heeds(&program.processes.initial, key, agent);
-                is_heeded.then_some((moves.agent, (moves.options[option].1, moves.duration.0)))
-            };
-            singles.ok_or(Fault::Advice { declaration, option })?.map(|one| one.and_then(heeded))
+            singles.ok_or(Fault::Advice { declaration, option })?
         }
+    };
+    // Of a group each member decides for itself.
+    let advice_of = |k: usize| {
+        advised.into_iter().flatten().find_map(|(declaration, option)| {
+            let moves = &scenario.moves[declaration];
+            let is_heeded = moves.agents().any(|agent| agent.0 as usize == k)
+                && program.behaviours.heeds(&program.processes.initial, key, k);
+            is_heeded.then(|| (moves.options[option].1, moves.duration.0))
+        })
     };
     let mut bodies = Vec::with_capacity(scenario.agents.len());
     for k in 0..scenario.agents.len() {
@@ -73,9 +76,7 @@ pub fn load(
     for (k, body) in bodies.into_iter().enumerate() {
         let Some(mut body) = body else { continue };
         body[Parameter::Radius as usize] = placed.radii[k];
-        let own =
-            advised.iter().flatten().find(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| *advice);
-        enter(program, state, (k, lane), (Occasion::Begins, own), &body, placed.positions[k]);
+        enter(program, state, (k, lane), (Occasion::Begins, advice_of(k)), &body, placed.positions[k]);
     }
     entrance::open(program, state, lane);
     driver::ask(&program.drive, state);
