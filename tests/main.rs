@@ -35,6 +35,7 @@ mod lanes;
 mod language;
 mod library;
 mod machines;
+mod measure;
 mod measures;
 mod mistakes;
 mod mocap;

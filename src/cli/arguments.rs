@@ -3,6 +3,7 @@
 use super::advise::AdviseCommand;
 use super::gait::GaitCommand;
 use super::infer::InferCommand;
+use super::measure::MeasureCommand;
 use super::path::PathCommand;
 use super::plot::PlotCommand;
 use super::replay::{CalibrateCommand, EvaluateCommand, FitCommand, MonitorCommand};
@@ -53,6 +54,8 @@ pub(super) enum Verb {
     Walk(Box<WalkCommand>),
     /// Infer traces and groups from a recording or a table of observations.
     Infer(Box<InferCommand>),
+    /// Measure densities, flows, speeds and encounters of a recording, frame by frame.
+    Measure(Box<MeasureCommand>),
     /// Ask the formulas of property files of a recording itself: what people did.
     Monitor(Box<MonitorCommand>),
     /// Compare the predictions of a model with what happened in a recording.
@@ -86,7 +89,7 @@ pub(super) enum Verb {
 const GROUPS: [(&str, &[&str]); 7] = [
     ("Ask", &["check", "show", "plot"]),
     ("Look", &["simulate", "path", "walk"]),
-    ("Recordings", &["infer", "monitor", "evaluate", "calibrate", "fit", "advise", "drift"]),
+    ("Recordings", &["infer", "measure", "monitor", "evaluate", "calibrate", "fit", "advise", "drift"]),
     ("Gait", &["gait"]),
     ("Large runs", &["shard", "merge"]),
     ("Files", &["fmt", "explain"]),

@@ -3,7 +3,7 @@
 use super::complaint;
 use super::terminal::Colors;
 use super::values::Model;
-use crate::compile::Study;
+use crate::compile::{Study, matches};
 use crate::engine::outcome::{Finding, Spot};
 use crate::library::{Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
 use crate::syntax::codes::Code;
@@ -109,6 +109,24 @@ pub(super) fn shown(name: &str) -> &str {
     if name == "-" { "<stdin>" } else { name }
 }
 
+/// The files of a folder that a path with `*` in its last part stands for, in order.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn matching(folder: &Path, pattern: &str) -> Vec<String> {
+    let (inner, last) = pattern.rsplit_once('/').map_or(("", pattern), |(inner, last)| (inner, last));
+    let place = match folder.join(inner) {
+        place if place.as_os_str().is_empty() => PathBuf::from("."),
+        place => place,
+    };
+    let entries = std::fs::read_dir(place).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut found: Vec<String> = names.filter(|name| matches(last, name)).collect();
+    found.sort();
+    if !inner.is_empty() {
+        found.iter_mut().for_each(|name| *name = format!("{inner}/{name}"));
+    }
+    found
+}
+
 /// Looks for a file beside the scenario, then under each data directory.
 fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String> {
     let beside = if scenario == "-" { None } else { Path::new(scenario).parent() };
@@ -158,6 +176,12 @@ impl Folder for Disk<'_> {
         let bytes = read_file(&found).map_err(|error| format!("`{path}` {error}"));
         self.paths.push(found);
         bytes
+    }
+
+    fn matching(&mut self, pattern: &str) -> Vec<String> {
+        let beside = if self.model.scenario == "-" { None } else { Path::new(&self.model.scenario).parent() };
+        let folders = beside.into_iter().chain(self.model.data.iter().map(PathBuf::as_path));
+        folders.map(|folder| matching(folder, pattern)).find(|found| !found.is_empty()).unwrap_or_default()
     }
 
     fn shown<'n>(&self, name: &'n str) -> &'n str {

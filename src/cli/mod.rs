@@ -13,6 +13,7 @@ mod infer;
 mod inputs;
 mod launch;
 mod manual;
+mod measure;
 mod merge;
 mod misuse;
 mod output;
@@ -106,6 +107,7 @@ fn dispatch(verb: &Verb, colors: Colors) -> Exit {
             walk::run(command, colors)
         }
         Verb::Infer(command) => infer::run(command, colors),
+        Verb::Measure(command) => measure::run(command, colors),
         Verb::Monitor(command) => replay::monitor(command, colors),
         Verb::Evaluate(command) => replay::evaluate(command, colors),
         Verb::Calibrate(command) => replay::calibrate(command, colors),

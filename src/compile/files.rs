@@ -2,7 +2,7 @@
 
 use crate::compile::context::sighting::{Grouping, Seen, Site};
 use crate::compile::people::intended::{beside, destinations};
-use crate::data::tracks::Velocity;
+use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Text, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -69,10 +69,40 @@ pub(crate) fn missing(span: Span, reason: &str) -> Diagnostic {
         hint: "files are searched beside the scenario, then in each `--data DIR`")
 }
 
+/// Why there is no recording.
+#[derive(Clone, Debug)]
+pub enum Unread {
+    /// No file, or files that do not fit together.
+    Missing(String),
+    /// Lines that cannot be read.
+    Lines(Vec<LineError>),
+}
+
+/// Whether a path stands for several files.
+pub fn is_series(path: &str) -> bool {
+    path.contains('*')
+}
+
+/// Whether the name of a file is one of those that a pattern with `*` stands for.
+pub fn matches(pattern: &str, name: &str) -> bool {
+    let mut parts = pattern.split('*');
+    let Some(rest) = parts.next().and_then(|first| name.strip_prefix(first)) else { return false };
+    let parts: Vec<&str> = parts.collect();
+    let Some((last, middle)) = parts.split_last() else { return rest.is_empty() };
+    let mut rest = rest;
+    for part in middle {
+        let Some(at) = rest.find(part) else { return false };
+        rest = &rest[at + part.len()..];
+    }
+    rest.ends_with(last)
+}
+
 /// The contents of the files that were asked for, or why there are none.
 #[derive(Clone, Debug, Default)]
 pub struct Files {
     contents: BTreeMap<String, Result<Vec<u8>, String>>,
+    /// The files that a path with `*` stands for.
+    series: BTreeMap<String, Vec<String>>,
     /// What is seen now, by the names of tracks, which then need no file.
     seen: BTreeMap<String, Seen>,
     /// Which velocities recordings have, whatever the scenario says.
@@ -92,6 +122,28 @@ impl Files {
     /// Hands over the contents of a path, or a sentence why there are none.
     pub fn provide(&mut self, path: impl Into<String>, contents: Result<Vec<u8>, String>) {
         self.contents.insert(path.into(), contents);
+    }
+
+    /// Hands over which files a path with `*` stands for; their contents are handed over each by itself.
+    pub fn series(&mut self, path: impl Into<String>, files: Vec<String>) {
+        self.series.insert(path.into(), files);
+    }
+
+    /// The recording in a file, or in all files that a path with `*` stands for.
+    ///
+    /// # Errors
+    /// Why there is none: a sentence, or the bad lines of the first file that has any.
+    pub fn recording(&self, path: &str, format: &Format, reading: &Reading) -> Result<Recording, Unread> {
+        let Some(files) = self.series.get(path) else {
+            let bytes = self.get(path).map_err(Unread::Missing)?;
+            return format.read(bytes, reading).map_err(Unread::Lines);
+        };
+        let mut parts = Vec::with_capacity(files.len());
+        for file in files {
+            let bytes = self.get(file).map_err(Unread::Missing)?;
+            parts.push(format.read(bytes, reading).map_err(Unread::Lines)?);
+        }
+        Recording::joined(parts).map_err(Unread::Missing)
     }
 
     /// Hands over who is seen now, instead of what the tracks of this name contain.

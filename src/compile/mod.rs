@@ -22,7 +22,7 @@ mod written;
 pub use consequences::own_errors;
 pub use context::roster::Starts;
 pub use context::sighting::{Grouping, Seen, Sighting, Site};
-pub use files::{Files, Request, requests};
+pub use files::{Files, Request, Unread, is_series, matches, requests};
 pub use lower::margin;
 pub use people::tracks::reading_of;
 pub use query::methods;

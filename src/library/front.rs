@@ -5,7 +5,9 @@ use super::models;
 use super::refusal::refusal;
 use crate::advise::groups;
 use crate::base::fingerprint::Fingerprint;
-use crate::compile::{Files, Input, Setting, Starts, Study, examine, own_errors, requests};
+use crate::compile::{
+    Files, Input, Request, Setting, Starts, Study, examine, is_series, own_errors, requests,
+};
 use crate::data::tracks::Velocity;
 use crate::engine::overfull_starts;
 use crate::gait::model::{FIT_AGAIN, LearnedGait};
@@ -38,6 +40,11 @@ pub trait Folder {
     /// # Errors
     /// A sentence that says why there are none.
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String>;
+
+    /// The paths of all files that a path with `*` in its last part stands for, in order; none where there are none.
+    fn matching(&mut self, _pattern: &str) -> Vec<String> {
+        Vec::new()
+    }
 
     /// The name of a text for messages.
     fn shown<'n>(&self, name: &'n str) -> &'n str {
@@ -165,7 +172,17 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
         complete &= reader.inputs.calibration.is_some();
         files.site = reader.inputs.calibration.as_ref().and_then(Calibration::site);
     }
-    for request in requests(&scenario) {
+    let mut asked = requests(&scenario);
+    for series in asked.extract_if(.., |request| is_series(&request.path)).collect::<Vec<_>>() {
+        let paths = reader.folder.matching(&series.path);
+        asked.extend(paths.iter().map(|path| Request { path: path.clone(), ..series.clone() }));
+        if paths.is_empty() {
+            files.provide(series.path.clone(), Err(format!("no file matches `{}`", series.path)));
+        } else {
+            files.series(series.path, paths);
+        }
+    }
+    for request in asked {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {
             reader.inputs.prints.push((request.path.clone(), Fingerprint::of(bytes)));

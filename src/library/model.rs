@@ -8,7 +8,7 @@ use super::report::Report;
 use super::trial::Trial;
 use super::ways::{is_refused, survey};
 use crate::base::random::TrialKey;
-use crate::compile::Study;
+use crate::compile::{Study, matches};
 use crate::engine::outcome::CallResult;
 use crate::engine::{Call, CommandLine, Nobody, no_start, placeable, run};
 use crate::gait;
@@ -119,6 +119,10 @@ impl Folder for Given<'_> {
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
         let contents = self.draft.files.get(path).cloned();
         contents.ok_or_else(|| format!("the contents of `{path}` were not given; call `Draft::file`"))
+    }
+
+    fn matching(&mut self, pattern: &str) -> Vec<String> {
+        self.draft.files.keys().filter(|path| matches(pattern, path)).cloned().collect()
     }
 }
 

@@ -142,7 +142,7 @@ pub fn evaluate(
 /// Trials from one instant on, beside what happened.
 fn predict(
     replay: &Replay,
-    Judged { instant, truths, reach }: &Judged,
+    Judged { instant, truths, reach, .. }: &Judged,
     prepared: &PreparedWorld,
     columns: &[usize],
     (series, trials): (Series, u64),

@@ -4,7 +4,7 @@
 //! radii are the means of the kind. A body of several people is at their mean.
 
 use super::course::{Beyond, course};
-use super::formulas::targets;
+use super::formulas::{self, Asked, targets};
 use super::instants::Instant;
 use super::situation::{Replay, is_of_a_place};
 use crate::base::geometry::Vec2;
@@ -22,6 +22,8 @@ pub struct Judged {
     pub instant: Instant,
     /// Whether each property holds; `None` where that is unresolved.
     pub truths: Vec<Option<bool>>,
+    /// The value of each number that is asked; `None` where that is unresolved.
+    pub values: Vec<Option<f64>>,
     /// Twice the mean radius of the user, m; `None` where the people of the model cannot start.
     pub(super) reach: Option<f64>,
 }
@@ -37,9 +39,11 @@ pub fn monitor(
     threads: &Threads,
 ) -> Result<Vec<Judged>, Vec<Diagnostic>> {
     let one = |instant: &Instant| {
-        let (truths, reach) = match replay.study_at(*instant) {
+        let (truths, values, reach) = match replay.study_at(*instant) {
             Ok(study) => {
-                let targets = targets(&study);
+                let mut targets = targets(&study);
+                let count = targets.len();
+                targets.extend(formulas::numbers(&study).iter().map(|(_, target)| *target));
                 let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
                 match targets.first().and_then(|target| study.worlds.get(target.world)) {
                     Some(world) => {
@@ -47,28 +51,62 @@ pub fn monitor(
                         let radius = agents
                             .get(replay.place_of_user(agents))
                             .map_or(0.0, |agent| agent.body[Parameter::Radius].mean());
-                        (happened(replay, *instant, (world, &columns), beyond), Some(2.0 * radius))
+                        let readings = readings(replay, *instant, (world, &columns), beyond);
+                        let truths = readings.iter().take(count).map(truth).collect();
+                        let values = readings.iter().skip(count).map(value).collect();
+                        (truths, values, Some(2.0 * radius))
                     }
-                    None => (Vec::new(), None),
+                    None => (Vec::new(), Vec::new(), None),
                 }
             }
             Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => {
-                (vec![None; replay.formulas.names.len()], None)
+                (vec![None; replay.formulas.names.len()], Vec::new(), None)
             }
             Err(errors) => return Err(errors),
         };
-        Ok(Judged { instant: *instant, truths, reach })
+        Ok(Judged { instant: *instant, truths, values, reach })
     };
     threads.map(instants, one).into_iter().collect()
+}
+
+/// The numbers that are asked, from the first instant at which the model can be made.
+pub fn numbers(replay: &Replay, instants: &[Instant]) -> Vec<Asked> {
+    let of = |instant: &Instant| Some(formulas::numbers(&replay.study_at(*instant).ok()?));
+    let found = instants.iter().find_map(of).unwrap_or_default();
+    found.into_iter().map(|(asked, _)| asked).collect()
+}
+
+fn truth(reading: &Reading) -> Option<bool> {
+    match reading {
+        Reading::Truth(truth) => Some(*truth),
+        _ => None,
+    }
+}
+
+fn value(reading: &Reading) -> Option<f64> {
+    match reading {
+        Reading::Value(value) => Some(*value),
+        _ => None,
+    }
 }
 
 /// Whether each of some columns of a world held from an instant on; the user's own track is never continued.
 pub(super) fn happened(
     replay: &Replay,
     instant: Instant,
-    (world, columns): (&World, &[usize]),
+    of: (&World, &[usize]),
     beyond: Beyond,
 ) -> Vec<Option<bool>> {
+    readings(replay, instant, of, beyond).iter().map(truth).collect()
+}
+
+/// What each of some columns of a world came to.
+fn readings(
+    replay: &Replay,
+    instant: Instant,
+    (world, columns): (&World, &[usize]),
+    beyond: Beyond,
+) -> Vec<Reading> {
     let mean = averaged(world);
     let prepared = PreparedWorld::new(&mean);
     let dt = prepared.program.dt;
@@ -85,12 +123,5 @@ pub(super) fn happened(
         let sum = all.iter().fold((Vec2::zeros(), Vec2::zeros()), |sum, one| (sum.0 + one.0, sum.1 + one.1));
         (!all.is_empty()).then(|| (sum.0 / count, sum.1 / count))
     };
-    let truth = |reading: &Reading| match reading {
-        Reading::Truth(truth) => Some(*truth),
-        _ => None,
-    };
-    match judge(&prepared, columns, seen) {
-        Ok(readings) => readings.iter().map(truth).collect(),
-        Err(_) => vec![None; columns.len()],
-    }
+    judge(&prepared, columns, seen).unwrap_or_else(|_| vec![Reading::Unresolved; columns.len()])
 }

@@ -73,10 +73,7 @@ impl Replay {
         site: impl FnOnce(&Self) -> Result<Option<Site>, Diagnostic>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let file = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
-        let recorded = file.format.read(file.bytes, &file.reading).map_err(|errors| {
-            let first = errors.first().map_or(String::new(), ToString::to_string);
-            vec![error!(E0702, file.place, "the recording cannot be read").label(first)]
-        })?;
+        let recorded = file.recording().map_err(|error| vec![error])?;
         let cast = Cast::of(input.scenario, tracks)?;
         let who = match whose {
             Whose::Written => Some(cast.person),
@@ -113,7 +110,7 @@ impl Replay {
     fn ask(&mut self, input: &Input<'_>) -> Result<(), Vec<Diagnostic>> {
         self.formulas = Formulas::of(input.properties, SourceId(self.sources.len() as u16));
         self.sources.push(self.formulas.source.clone());
-        if self.formulas.names.is_empty() && !input.properties.is_empty() {
+        if self.formulas.names.is_empty() && !self.formulas.has_numbers && !input.properties.is_empty() {
             let error = Diagnostic::placeless(Code::E0705, "the property files name no property");
             let hint = "write one: `property safe = G<=4.8 s (distance(user, friend) > 0.5 m)`";
             return Err(vec![error.hint(hint)]);

@@ -22,6 +22,7 @@ pub mod html;
 pub mod infer;
 pub mod json;
 pub mod junit;
+pub mod measure;
 pub mod model;
 pub mod monitor;
 pub mod number;

@@ -22,11 +22,7 @@ pub(super) fn batches(
     arguments: &AdviseCommand,
 ) -> Result<Vec<Batch>, Diagnostic> {
     let file = source(&parsed.scenario, &parsed.files, name)?;
-    let found = file.format.read_batches(file.bytes, &file.reading, arguments.velocity());
-    let batches = found.map_err(|errors| {
-        let first = errors.first().map_or(String::new(), ToString::to_string);
-        error!(E0702, file.place, "the recording cannot be read").label(first)
-    })?;
+    let batches = file.batches(arguments.velocity())?;
     let first = batches.first().map_or(0.0, |batch| batch.time);
     let last = batches.last().map_or(0.0, |batch| batch.time);
     let is_reversed = arguments.from.zip(arguments.to).is_some_and(|(from, to)| from > to);

@@ -14,6 +14,9 @@ pub(in crate::cli) struct InferCommand {
     /// Format of the file; by default what its first line shows.
     #[arg(long = "input", value_name = "FORMAT", value_parser = parse_format)]
     pub(super) input: Option<&'static Format>,
+    /// The columns of a table without a header, with commas: `id,frame,x/cm,y/cm`.
+    #[arg(long, value_name = "NAMES")]
+    pub(super) columns: Option<String>,
     /// Frames per second of a table with frames.
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     pub(super) fps: Option<f64>,
@@ -103,7 +106,8 @@ pub(super) enum InferFormat {
     Svg,
 }
 
-fn parse_format(text: &str) -> Result<&'static Format, String> {
+/// The format of a recording, by its name.
+pub(in crate::cli) fn parse_format(text: &str) -> Result<&'static Format, String> {
     let names: Vec<&str> = Format::all().iter().map(|format| format.name).collect();
     Format::from_name(text).ok_or_else(|| format!("the formats are {}", names.join(", ")))
 }

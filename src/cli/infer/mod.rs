@@ -3,7 +3,7 @@
 mod arguments;
 mod motion;
 
-pub(super) use arguments::InferCommand;
+pub(super) use arguments::{InferCommand, parse_format};
 
 use super::complaint;
 use super::inputs;
@@ -43,11 +43,16 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
     let files: Vec<PathBuf> = named.into_iter().flatten().map(PathBuf::from).chain(paths).collect();
     output::guard_all(&[arguments.output.as_deref(), arguments.report.as_deref()], &files)?;
     let bytes = inputs::read(&arguments.tracks).map_err(complaint::input)?;
-    let Some(format) = arguments.input.or_else(|| Format::of(&bytes)) else {
+    let named = arguments.columns.as_ref().and_then(|_| Format::from_name("csv"));
+    let Some(format) = arguments.input.or(named).or_else(|| Format::of(&bytes)) else {
         let said = format!("`{}` is in no known format", inputs::shown(&arguments.tracks));
         return Err(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`").into());
     };
-    let reading = Reading { frames_per_second: arguments.fps, trial: arguments.trial };
+    let reading = Reading {
+        frames_per_second: arguments.fps,
+        trial: arguments.trial,
+        columns: arguments.columns.clone(),
+    };
     let mut batches = format
         .read_batches(&bytes, &reading, arguments.velocity)
         .map_err(|errors| bad_lines(&arguments.tracks, &errors))?;

@@ -5,9 +5,10 @@ use super::{Call, Exit};
 use crate::cli::output;
 use crate::cli::terminal::Colors;
 use crate::data::tracks::Velocity;
-use crate::replay::{Whose, monitor};
+use crate::replay::{Whose, monitor, numbers};
 use crate::report::monitor::{
-    InstantVerdict, Monitored, MonitoredInstant, MonitoredProperty, to_json, to_text, write_csv,
+    InstantVerdict, Monitored, MonitoredInstant, MonitoredNumber, MonitoredProperty, to_json, to_text,
+    write_csv,
 };
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -36,6 +37,11 @@ fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnosti
         .collect();
     let confidence = arguments.replayed.span.confidence;
     let names = replay.formulas.names.iter().enumerate();
+    let asked = numbers(replay, &call.instants);
+    let is_alone = replay.only().is_some();
+    let numbers = asked.iter().enumerate();
+    let numbers =
+        numbers.map(|(k, asked)| MonitoredNumber::of(asked, k, &judged, is_alone, confidence)).collect();
     let monitored = Monitored {
         model: arguments.replayed.model.scenario.clone(),
         properties: arguments.replayed.properties.clone(),
@@ -45,6 +51,7 @@ fn text(arguments: &MonitorCommand, call: &Call) -> Result<String, Vec<Diagnosti
         every: *every,
         beyond,
         confidence,
+        numbers,
         results: names.map(|(k, name)| MonitoredProperty::of(name, k, &instants, confidence)).collect(),
         instants,
     };

@@ -9,7 +9,7 @@ use crate::compile::context::{
     symbols::{Meaning, unknown},
 };
 use crate::compile::dimension::Dimension;
-use crate::compile::files::{Files, missing};
+use crate::compile::files::{Files, Unread, missing};
 use crate::compile::lower::call_arguments;
 use crate::compile::people::intended::{beside, places};
 use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
@@ -22,10 +22,10 @@ use std::collections::BTreeSet;
 /// How many bad lines of a file are shown.
 pub(crate) const SHOWN_LINES: usize = 10;
 /// The fields of tracks.
-const FIELDS: [&str; 4] = ["velocity", "memory", "trial", "fps"];
+const FIELDS: [&str; 5] = ["velocity", "memory", "trial", "fps", "columns"];
 
 /// What the fields say.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct TrackFields {
     velocity: Option<Velocity>,
     /// Seconds.
@@ -100,7 +100,7 @@ fn track_fields<'a>(context: &mut Context<'a>, body: &'a [Field]) -> Lowered<Tra
                 Ok(seconds) => read.memory = seconds,
                 Err(Reported) => failed = true,
             },
-            "trial" | "fps" => {
+            "trial" | "fps" | "columns" => {
                 if let Err(error) = read_into(&mut read.reading, field) {
                     context.note(error);
                     failed = true;
@@ -139,11 +139,12 @@ fn recording(
         let error = unknown("format", &format.name, format.span, Code::E0702, names.into_iter());
         return context.report(if error.hint.is_some() { error } else { error.hint(hint) });
     };
-    let bytes = match files.get(&path.value) {
-        Ok(bytes) => bytes,
-        Err(reason) => return context.report(missing(path.span, &reason)),
-    };
-    reader.read(bytes, &reading).or_else(|errors| context.report(unreadable(path.span, &errors)))
+    files.recording(&path.value, reader, &reading).or_else(|unread| {
+        context.report(match unread {
+            Unread::Missing(reason) => missing(path.span, &reason),
+            Unread::Lines(errors) => unreadable(path.span, &errors),
+        })
+    })
 }
 
 /// The statements of tracks with these fields about their file.
@@ -156,13 +157,20 @@ pub fn reading_of(body: &[Field]) -> Result<Reading, Diagnostic> {
     Ok(reading)
 }
 
-/// Takes the fields `trial` and `fps`.
+/// Takes the fields `trial`, `fps` and `columns`.
 fn read_into(reading: &mut Reading, field: &Field) -> Result<(), Diagnostic> {
     let number = match &field.value {
         Value::Plain(Expr { kind: ExprKind::Quantity(Quantity { value, unit: None }), .. }) => value.to_f64(),
         _ => f64::NAN,
     };
     let wrong = |said: &str| error!(E0305, field.value.span(), "{said}");
+    if field.name.name == "columns" {
+        let Value::Plain(Expr { kind: ExprKind::Text(columns), .. }) = &field.value else {
+            return Err(wrong("`columns` must be a text").hint("write `columns = \"id,frame,x/cm,y/cm\"`"));
+        };
+        reading.columns = Some(columns.clone());
+        return Ok(());
+    }
     match field.name.name.as_str() {
         "trial" if number >= 0.0 && number.fract() == 0.0 && number < MOST_TRIALS as f64 => {
             reading.trial = Some(number as u64);

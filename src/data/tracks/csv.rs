@@ -5,6 +5,7 @@
 //! ignored. Cells may be separated by semicolons or tabs, and numbers then have commas as decimal points. Lengths are metres. A table with `frame` needs the frames per second. `smc simulate` writes such tables.
 
 use super::cells::{cells, records, separator};
+use super::format::Reading;
 use super::line::{LineError, number, quoted, whole_fault};
 use super::recording::{Clock, Recording};
 use super::rows::{Row, TimedRow, Traces, people, usual_stride};
@@ -25,14 +26,35 @@ pub(super) fn is_person(name: &str) -> bool {
     [COLUMNS[ID], COLUMNS[AGENT]].iter().any(|known| name.eq_ignore_ascii_case(known))
 }
 
-/// The numbers of the columns of a table, from 0, and the separator of its cells.
-struct Header([Option<usize>; COLUMNS.len()], char);
+/// The numbers of the columns of a table, from 0, the separator of its cells, and the length of a unit of its lengths, m.
+struct Header([Option<usize>; COLUMNS.len()], char, f64);
+
+/// Units of lengths that may stand behind the name of a column, `x/cm`, and their sizes, m.
+const LENGTHS: [(&str, f64); 3] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
 
 impl Header {
     fn read(line: usize, record: &str, separator: char) -> Result<Self, Vec<LineError>> {
         let mut places = [None; COLUMNS.len()];
         let mut errors = Vec::new();
+        let mut size = None;
         for (k, (column, field)) in cells(record, separator).enumerate() {
+            let (field, unit) = match field.split_once('/') {
+                Some((name, unit)) if ["x", "y"].iter().any(|own| name.trim().eq_ignore_ascii_case(own)) => {
+                    let found = LENGTHS.iter().find(|(known, _)| *known == unit.trim());
+                    if found.is_none() {
+                        let said = format!("the unit {} of a length is not m, cm or mm", quoted(unit.trim()));
+                        errors.push(LineError::at(line, column, said));
+                    }
+                    (Cow::from(name.trim().to_owned()), found.map(|(_, size)| *size))
+                }
+                _ => (field, None),
+            };
+            if let Some(unit) = unit {
+                if size.is_some_and(|known| known != unit) {
+                    errors.push(LineError::at(line, column, "`x` and `y` must have one unit"));
+                }
+                size = Some(unit);
+            }
             let Some(name) = COLUMNS.iter().position(|name| field.eq_ignore_ascii_case(name)) else {
                 continue;
             };
@@ -57,7 +79,7 @@ impl Header {
         if vx.is_some() != vy.is_some() {
             errors.push(LineError::whole(line, "the header must have both `vx` and `vy` or neither"));
         }
-        if errors.is_empty() { Ok(Self(places, separator)) } else { Err(errors) }
+        if errors.is_empty() { Ok(Self(places, separator, size.unwrap_or(1.0))) } else { Err(errors) }
     }
 }
 
@@ -73,12 +95,30 @@ pub fn read_csv(
     frames_per_second: Option<f64>,
     trial: Option<u64>,
 ) -> Result<Recording, Vec<LineError>> {
+    read_columns(text, &Reading { frames_per_second, trial, columns: None })
+}
+
+/// The same of a table whose columns are perhaps named by the call and not by its first line. Then blanks separate cells, unless
+/// there are commas, semicolons or tabs, and lines that begin with `#` are comments.
+pub(super) fn read_columns(text: &str, reading: &Reading) -> Result<Recording, Vec<LineError>> {
+    let Reading { frames_per_second, trial, columns } = reading;
+    let (frames_per_second, trial) = (*frames_per_second, *trial);
     let separator = separator(text.trim_start().lines().next().unwrap_or_default());
-    let mut records = records(text, separator);
-    let Some((line, first, _)) = records.next() else {
-        return Err(vec![LineError::of_file("the file contains no observation")]);
+    let spaced = columns.as_ref().filter(|_| separator == ',' && !text.contains(',')).map(|_| in_cells(text));
+    let text = spaced.as_deref().unwrap_or(text);
+    let mut records =
+        records(text, separator).filter(|(_, record, _)| columns.is_none() || !record.starts_with('#'));
+    let (line, header) = match columns {
+        Some(columns) => {
+            (1, Header::read(0, columns, ',').map(|header| Header(header.0, separator, header.2))?)
+        }
+        None => {
+            let Some((line, first, _)) = records.next() else {
+                return Err(vec![LineError::of_file("the file contains no observation")]);
+            };
+            (line, Header::read(line, first, separator)?)
+        }
     };
-    let header = Header::read(line, first, separator)?;
     let has_frames = header.0[FRAME].is_some();
     if !has_frames && frames_per_second.is_some() {
         let message = "the table has times, so it takes no number of frames per second";
@@ -110,6 +150,12 @@ pub fn read_csv(
     let people = people(framed.collect(), errors, |row| format!("in frame {}", row.frame))?;
     let stride = usual_stride(&people).unwrap_or(1);
     Ok(Recording::new(people, Clock::film(stride, 1.0 / rate)))
+}
+
+/// The same lines with commas between the cells.
+fn in_cells(text: &str) -> String {
+    let lines = text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(","));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// One row; of a table with frames, its time is the frame.
@@ -162,7 +208,7 @@ fn read_row(
             errors.push(LineError::whole(line, format!("column `{}` is missing", COLUMNS[name])));
         }
     }
-    let position = Vec2::new(values[3], values[4]);
+    let position = Vec2::new(values[3], values[4]) * header.2;
     if let Some(fault) = coordinate_fault(position) {
         errors.push(LineError::whole(line, fault));
     }

@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::cells::{cells, separator};
-use super::csv::{is_person, read_csv};
+use super::csv::{is_person, read_columns};
 use super::eth_biwi::read_table;
 use super::jsonl::read_json_lines;
 use super::line::LineError;
@@ -11,15 +11,18 @@ use super::parquet::read_parquet;
 use super::pedpy::read_pedpy;
 use super::plausible::Doubt;
 use super::recording::{Recording, Velocity};
+use super::sqlite::read_sqlite;
 use super::trajnet::read_trajnet;
 
 /// What a file does not say.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Frames per second of a table with frames.
     pub frames_per_second: Option<f64>,
     /// The trial of a table with several.
     pub trial: Option<u64>,
+    /// The columns of a table without a header, with commas: `id,frame,x/cm,y/cm`.
+    pub columns: Option<String>,
 }
 
 type Read<T> = fn(&str, &Reading) -> Result<T, Vec<LineError>>;
@@ -46,13 +49,20 @@ pub struct Format {
 }
 
 /// All formats, in the order in which the first line of a file is tried.
-static FORMATS: [Format; 7] = [
+static FORMATS: [Format; 8] = [
     Format {
         name: "parquet",
         read: Reader::Bytes(|bytes, reading| read_parquet(bytes, reading.trial)),
         has_trials: true,
         read_batches: None,
         begins: |line| line.starts_with("PAR1"),
+    },
+    Format {
+        name: "sqlite",
+        read: Reader::Bytes(|bytes, _| read_sqlite(bytes)),
+        has_trials: false,
+        read_batches: None,
+        begins: |line| line.starts_with("SQLite format 3"),
     },
     Format {
         name: "jsonl",
@@ -77,7 +87,7 @@ static FORMATS: [Format; 7] = [
     },
     Format {
         name: "csv",
-        read: Reader::Text(|text, reading| read_csv(text, reading.frames_per_second, reading.trial)),
+        read: Reader::Text(read_columns),
         has_trials: true,
         read_batches: None,
         begins: |line| cells(line, separator(line)).any(|(_, name)| is_person(&name)),
@@ -98,8 +108,11 @@ static FORMATS: [Format; 7] = [
     },
 ];
 
+/// The format of tables whose columns can be named.
+const COLUMNS: &str = "csv";
+
 /// The formats whose files have times, so that they need no rate.
-const TIMED: [&str; 3] = ["parquet", "jsonl", "observations"];
+const TIMED: [&str; 4] = ["parquet", "sqlite", "jsonl", "observations"];
 
 impl Format {
     /// All formats.
@@ -134,6 +147,9 @@ impl Format {
     /// Whether the format has what is asked for.
     fn check(&self, reading: &Reading) -> Result<(), Vec<LineError>> {
         let said = match reading {
+            Reading { columns: Some(_), .. } if self.name != COLUMNS => {
+                "columns of its own: read it as `csv`"
+            }
             Reading { trial: Some(_), .. } if !self.has_trials => "no trials to choose from",
             Reading { frames_per_second: Some(_), .. } if TIMED.contains(&self.name) => {
                 "times, so it takes no number of frames per second"

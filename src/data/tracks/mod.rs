@@ -14,6 +14,7 @@ pub mod pedpy;
 mod plausible;
 pub mod recording;
 mod rows;
+pub mod sqlite;
 pub mod trajnet;
 
 pub use batch::{Batch, Observation};
@@ -28,4 +29,5 @@ pub use parquet::read_parquet;
 pub use pedpy::read_pedpy;
 pub use plausible::Doubt;
 pub use recording::{Person, PersonState, Recording, Sample, Velocity};
+pub use sqlite::read_sqlite;
 pub use trajnet::read_trajnet;

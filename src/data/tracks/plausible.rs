@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn people_who_stand_or_are_few_show_nothing() {
         let doubt = |text: &str| {
-            let reading = Reading { frames_per_second: Some(25.0), trial: None };
+            let reading = Reading { frames_per_second: Some(25.0), ..Reading::default() };
             Format::from_name("csv").unwrap().doubt(text, &reading, Velocity::Recorded)
         };
         let standing: String = (0..400)

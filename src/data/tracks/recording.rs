@@ -92,7 +92,12 @@ pub struct Recording {
     clock: Clock,
     velocity: Velocity,
     velocities_are_blank: bool,
+    /// The last frame of each file of several but the last, and the first of the next.
+    joints: Vec<(u32, u32)>,
 }
+
+/// Time between the last frame of one file and the first of the next, where several are one recording, s.
+const BETWEEN_FILES: f64 = 60.0;
 
 impl Recording {
     /// A recording of people with ascending ids. Where a sample lacks a velocity, all become the seen ones; so they do where
@@ -110,9 +115,56 @@ impl Recording {
         let velocities_are_blank =
             samples().all(|sample| sample.velocity == Some(Vec2::zeros())) && people.iter().any(moves);
         let velocity = Velocity::Recorded;
-        let recording = Self { people, frames, clock, velocity, velocities_are_blank: false };
+        let joints = Vec::new();
+        let recording = Self { people, frames, clock, velocity, velocities_are_blank: false, joints };
         let recording = if all && !velocities_are_blank { recording } else { recording.with(Velocity::Seen) };
         Self { velocities_are_blank, ..recording }
+    }
+
+    /// Several recordings as one: each begins a minute after the last frame of the one before. Ids that an earlier one has, too,
+    /// go on from the largest id so far.
+    ///
+    /// # Errors
+    /// None at all, or another number of frames per second: a sentence.
+    pub fn joined(parts: Vec<Self>) -> Result<Self, String> {
+        let mut parts = parts.into_iter();
+        let Some(mut whole) = parts.next() else { return Err("no file matches".to_owned()) };
+        for part in parts {
+            let rates = [&whole, &part].map(Self::frames_per_second);
+            if (rates[0] - rates[1]).abs() > 1e-9 * rates[0] || whole.clock.stride != part.clock.stride {
+                return Err(format!("the files have {} and {} frames per second", rates[0], rates[1]));
+            }
+            let (Some(last), Some(first)) = (whole.frames.last().copied(), part.frames.first().copied())
+            else {
+                continue;
+            };
+            let gap = (BETWEEN_FILES / whole.clock.seconds_per_frame).ceil() as u32;
+            // As many whole steps, so that all frames lie on one lattice.
+            let steps = gap.max(whole.clock.longest_gap + 1).div_ceil(whole.clock.stride);
+            let begin = last + steps * whole.clock.stride;
+            let is_known = part.people.iter().any(|person| whole.person(person.id).is_some());
+            let more = if is_known { whole.people.last().map_or(0, |person| person.id + 1) } else { 0 };
+            whole.people.extend(part.people.into_iter().map(|mut person| {
+                person.id += more;
+                person.samples.iter_mut().for_each(|sample| sample.frame = sample.frame - first + begin);
+                person
+            }));
+            whole.people.sort_by_key(|person| person.id);
+            whole.frames.extend(part.frames.iter().map(|frame| frame - first + begin));
+            whole.joints.push((last, begin));
+            whole.velocities_are_blank &= part.velocities_are_blank;
+            if part.velocity == Velocity::Seen {
+                whole = whole.with(Velocity::Seen);
+            }
+        }
+        Ok(whole)
+    }
+
+    /// Whether a time lies between two files of one recording.
+    pub fn is_between(&self, time: f64) -> bool {
+        self.joints
+            .iter()
+            .any(|(last, next)| time > self.time_of(*last) + 1e-6 && time < self.time_of(*next) - 1e-6)
     }
 
     /// Whether the file has only velocities of 0 although somebody moves.

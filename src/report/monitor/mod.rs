@@ -1,7 +1,10 @@
 //! Properties of recorded people: `smc monitor`.
 
+mod number;
 #[cfg(test)]
 mod tests;
+
+pub use number::MonitoredNumber;
 
 use crate::data::tracks::Velocity;
 use crate::replay::Beyond;
@@ -34,6 +37,8 @@ pub struct Monitored {
     pub confidence: f64,
     /// The properties, in order.
     pub results: Vec<MonitoredProperty>,
+    /// The numbers that queries estimate, in order.
+    pub numbers: Vec<MonitoredNumber>,
     /// All instants, in the order of the rows.
     pub instants: Vec<MonitoredInstant>,
 }
@@ -175,7 +180,33 @@ pub fn to_text(report: &Monitored) -> String {
         [one.name.clone(), satisfied, violated, unresolved, persons, share]
     });
     let heads = ["property", "satisfied", "violated", "unresolved", "persons", "share satisfied"];
-    table(&mut out, "", heads, rows.collect());
+    if !report.results.is_empty() {
+        table(&mut out, "", heads, rows.collect());
+    }
+    if !report.numbers.is_empty() {
+        let parts = if report.user.is_some() { "blocks" } else { "persons" };
+        let rows = report.numbers.iter().map(|one| {
+            let unit = if one.unit.is_empty() { String::new() } else { format!(" {}", one.unit) };
+            let value = one.estimate.as_ref().map_or_else(|| "-".to_owned(), |value| estimated(value, &unit));
+            let [instants, unresolved, clipped, parts] =
+                [one.instants, one.unresolved, one.clipped, one.parts].map(count);
+            [one.name.clone(), instants, unresolved, clipped, parts, value]
+        });
+        out.push_str(if report.results.is_empty() { "" } else { "\n" });
+        table(&mut out, "", ["number", "instants", "unresolved", "clipped", parts, "value"], rows.collect());
+        let drawn = match report.user {
+            Some(_) => format!("blocks of {} s", plain(number::BLOCK)),
+            None => "persons".to_owned(),
+        };
+        let _ = writeln!(
+            out,
+            "\nvalue: of all instants, with a {} % interval (bootstrap over {drawn})",
+            plain(100.0 * confidence)
+        );
+    }
+    if report.results.is_empty() {
+        return out;
+    }
     let _ = writeln!(
         out,
         "\nshare satisfied: of the resolved instants, with a {} % interval (bootstrap over persons)",
@@ -207,8 +238,22 @@ pub fn to_json(report: &Monitored) -> String {
         "beyond": report.beyond.name(),
         "confidence": report.confidence,
         "results": report.results.iter().map(result).collect::<Vec<_>>(),
+        "numbers": report.numbers.iter().map(number).collect::<Vec<_>>(),
+        "resampled": if report.user.is_some() { "blocks" } else { "persons" },
     });
     format!("{all:#}\n")
+}
+
+fn number(one: &MonitoredNumber) -> Value {
+    json!({
+        "name": one.name,
+        "unit": one.unit,
+        "instants": one.instants,
+        "unresolved": one.unresolved,
+        "clipped": one.clipped,
+        "parts": one.parts,
+        "value": one.estimate,
+    })
 }
 
 fn result(one: &MonitoredProperty) -> Value {

@@ -18,6 +18,7 @@ fn monitored(names: [&str; 2]) -> Monitored {
     ];
     let result = |k: usize| MonitoredProperty::of(names[k], k, &instants, 0.95);
     Monitored {
+        numbers: Vec::new(),
         model: "hall.scn".to_owned(),
         properties: vec!["safe.bltl".to_owned()],
         recording: "hotel.txt".to_owned(),
