@@ -137,7 +137,9 @@ fn recordings_are_measured_as_pedpy_does() {
         "density(hall)",
     ];
     let mut call = vec!["measure", "trial.txt", "room.scn", "--format", "csv"];
-    numbers.iter().for_each(|number| call.extend(["--number", number]));
+    for number in numbers {
+        call.extend(["--number", number]);
+    }
     let said = place.call(&call);
     assert_eq!(said.code, Some(0), "{}", said.err);
     let all = columns(&said.out);
@@ -170,7 +172,7 @@ fn a_table_without_a_header_is_read_by_its_columns() {
     for k in 0..=80 {
         let x = 10.0 * f64::from(k);
         let _ = write!(blanks, "1 {k} {x} 0 170\n3 {k} 400 300 170\n");
-        let _ = write!(commas, "1,{k},{},0\n", 0.01 * x);
+        let _ = writeln!(commas, "1,{k},{},0", 0.01 * x);
     }
     let scenario = "horizon = 2 s\nstep = 0.02 s\ntracks t = csv \"a.txt\" { columns = \"id,frame,x/cm,y/cm,z\"; fps = 10 }\n\
         kind adult: preset smc2 { }\nagents all: adult from t at 1 s\n";
@@ -240,11 +242,17 @@ fn the_numbers_of_queries_are_monitored() {
     let numbers = json["numbers"].as_array().unwrap();
     let of = |k: usize| numbers[k]["value"]["estimate"].as_f64().unwrap();
     // Two of three walk at 1 m/s, for the same number of instants as the third stands.
-    assert!((of(0) - 2.0 / 3.0).abs() < 0.05 && (of(1) - 1.0).abs() < 1e-6 && (of(2) - 0.5).abs() < 1e-9, "{json:#}");
+    assert!(
+        (of(0) - 2.0 / 3.0).abs() < 0.05 && (of(1) - 1.0).abs() < 1e-6 && (of(2) - 0.5).abs() < 1e-9,
+        "{json:#}"
+    );
     assert!(numbers[2]["clipped"].as_u64().unwrap() > 10);
     assert_eq!((json["resampled"].as_str(), json["results"].as_array().unwrap().len()), (Some("persons"), 1));
     let text = place.call(&call).out;
-    assert!(text.contains("bootstrap over persons") && text.contains("CVaR(0.5, max<=1 s (speed(user)))"), "{text}");
+    assert!(
+        text.contains("bootstrap over persons") && text.contains("CVaR(0.5, max<=1 s (speed(user)))"),
+        "{text}"
+    );
     let alone = place.call(&["monitor", "a.scn", "a.bltl", "--tracks", "t"]).out;
     assert!(alone.contains("bootstrap over blocks of 30 s"), "{alone}");
 }
@@ -275,5 +283,72 @@ fn a_database_of_jupedsim_is_read_as_it_is_written() {
         bytes[at] ^= 0x55;
         place.write("b.sqlite", &bytes);
         assert!(matches!(place.call(&["measure", "b.sqlite"]).code, Some(0 | 2)), "{at}");
+    }
+}
+
+/// Columns beside the positions are numbers of formulas, in every format and in several files as one.
+#[test]
+fn other_columns_of_a_recording_are_numbers_of_formulas() {
+    let number = |k: u32, id: u32| 70.0 + 10.0 * f64::from(id) + 0.5 * f64::from(k);
+    let (mut table, mut lines) = ("time,id,x,y,Pulse,side\n".to_owned(), String::new());
+    for (k, id) in (0..60).flat_map(|k| [(k, 1), (k, 2)]) {
+        let (time, x) = (0.1 * f64::from(k), 0.1 * f64::from(k));
+        // The second one loses the sensor.
+        let pulse = if id == 2 && k > 40 { String::new() } else { number(k, id).to_string() };
+        let _ = writeln!(table, "{time:.1},{id},{x:.1},{id},{pulse},left");
+        let member = if pulse.is_empty() { String::new() } else { format!(",\"Pulse\":{pulse}") };
+        let _ = writeln!(
+            lines,
+            "{{\"time\":{time:.1},\"agent\":\"{id}\",\"x\":{x:.1},\"y\":{id}{member},\"note\":\"a\"}}"
+        );
+    }
+    let scenario = "horizon = 2 s\nstep = 0.1 s\ntracks t = csv \"a.csv\"\nkind adult: preset smc2 { }\n\
+        agent user: adult from t at 0 s id 1\nagent other: adult from t at 0 s id 2\n";
+    let queries = "property calm = G<=2 s (column(user, Pulse) < 100)\nproperty side = G<=2 s (column(other, Pulse) < 101)\n\
+        estimate Q(0.5, column(user, Pulse) at end)\n";
+    let place =
+        Place::new(&[("a.csv", &table), ("a.jsonl", &lines), ("a.scn", scenario), ("a.bltl", queries)]);
+    let said = place.call(&["monitor", "a.scn", "a.bltl", "--tracks", "t", "--format", "json"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let json: Value = said.json();
+    let counts = |k: usize| {
+        ["satisfied", "violated", "unresolved"].map(|name| json["results"][k][name].as_u64().unwrap())
+    };
+    // 100 is reached at 4 s and 101 at 2.2 s; the other has no number after 4 s.
+    assert_eq!((counts(0), counts(1)), ([20, 40, 0], [2, 39, 19]));
+    // The 20th of 40 windows that fit ends at 3.9 s.
+    assert_eq!(json["numbers"][0]["value"]["estimate"].as_f64(), Some(number(39, 1)));
+    let mean = ["--number", "mean(column(a, Pulse) for a in everyone)", "--format", "csv"];
+    let rows = |file: &str| -> Vec<String> {
+        let said = place.call(&[&["measure", file][..], &mean].concat());
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        said.out.lines().skip(1).map(|line| line.rsplit(',').next().unwrap().to_owned()).collect()
+    };
+    let values = rows("a.csv");
+    for (k, value) in (0..).zip(&values) {
+        let wanted = if k > 40 { String::new() } else { (number(k, 1) + 5.0).to_string() };
+        assert_eq!(value, &wanted, "{k}");
+    }
+    assert_eq!(rows("a.jsonl"), values);
+    place.write("b.csv", table.as_bytes());
+    assert_eq!(rows("*.csv"), [&values[..], &values[..]].concat());
+    let wrong = [
+        (
+            &["measure", "a.csv", "--number", "max(column(a, Puls) for a in everyone)"][..],
+            "did you mean `Pulse`?",
+        ),
+        (
+            &["measure", "a.csv", "--number", "max(column(a, 3) for a in everyone)"],
+            "expected the name of a column",
+        ),
+        (
+            &["measure", "a.csv", "--number", "max(column(a, side) for a in everyone)"],
+            "the recording has Pulse",
+        ),
+        (&["check", "a.scn", "a.bltl"], "in a simulated trial"),
+    ];
+    for (call, wanted) in wrong {
+        let said = place.call(call);
+        assert!(said.code == Some(2) && said.err.contains(wanted), "{call:?}: {}", said.err);
     }
 }

@@ -40,7 +40,8 @@ fn is_quoted(wanted: &str, line: &str) -> bool {
 /// Runs the blocks of a page and compares what is quoted after each.
 fn run(page: &str) {
     let place = Place::new(&[]);
-    for folder in ["models", "properties", "examples/papers", "examples/advise", "gaits"] {
+    for folder in ["models", "properties", "examples/papers", "examples/advise", "examples/cookbook", "gaits"]
+    {
         copied(&root().join(folder), &place.path(folder));
     }
     let text = read_to_string(root().join("docs").join(page)).unwrap();

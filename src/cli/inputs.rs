@@ -122,7 +122,9 @@ pub(super) fn matching(folder: &Path, pattern: &str) -> Vec<String> {
     let mut found: Vec<String> = names.filter(|name| matches(last, name)).collect();
     found.sort();
     if !inner.is_empty() {
-        found.iter_mut().for_each(|name| *name = format!("{inner}/{name}"));
+        for name in &mut found {
+            *name = format!("{inner}/{name}");
+        }
     }
     found
 }

@@ -111,6 +111,9 @@ pub struct Files {
     pub grouping: Option<Grouping>,
     /// The laws of the site, where a calibration tells them.
     pub site: Option<Site>,
+    /// The columns beside the positions of the recording that is shown, which `column(a, NAME)` reads; `None` where trials
+    /// are simulated.
+    pub columns: Option<Vec<String>>,
 }
 
 impl Files {

@@ -166,6 +166,7 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
     }
     context.tracks.grouping = files.grouping;
     context.tracks.site.clone_from(&files.site);
+    context.tracks.columns.clone_from(&files.columns);
     stepping::settle_gaits(context, file, files);
     let (mut barrier, mut line) = (0, 0);
     for item in &file.items {

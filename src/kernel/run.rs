@@ -12,7 +12,7 @@ use super::start::{self, Loaded};
 use super::state::{Slot, State};
 use super::{Close, Layout, driver};
 use crate::base::geometry::Vec2;
-use crate::base::lanes::{LANES, Mask};
+use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::model::AgentId;
@@ -153,6 +153,18 @@ impl<'p> Run<'p> {
             let (x, y, was) = before;
             let moved: Vec<Mask> = was.iter().zip(&self.state.present).map(|(was, is)| *was & *is).collect();
             self.program.passing.step(Level::new(), &mut self.state, (&x, &y), &moved);
+        }
+    }
+
+    /// The numbers of everybody in some columns of a recording, which are shown with the state; NaN where there is none.
+    pub fn tell(&mut self, columns: usize, value: impl Fn(usize, AgentId) -> f64) {
+        let nobody = vec![Lanes::splat(f64::NAN); self.state.present.len()];
+        self.state.columns.resize(columns, nobody);
+        for column in 0..columns {
+            for agent in 0..self.state.agents {
+                let Slot { block, lane } = self.state.slot(agent, 0);
+                self.state.columns[column][block].0[lane] = value(column, AgentId(agent as u32));
+            }
         }
     }
 

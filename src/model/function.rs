@@ -39,6 +39,8 @@ pub enum Field {
     Separation(Separation),
     /// Number of the state of a behaviour, from 0; -1 in someone who has no such behaviour.
     Mode(BehaviourId),
+    /// A column of the recording that is shown, by its number; unresolved in who has none, as in every simulated trial.
+    Column(u32),
 }
 
 /// What is measured from the beginning of a leg to its end.
@@ -98,6 +100,7 @@ pub enum Signature {
 pub enum Special {
     Area,
     Centroid,
+    Column,
     /// `x` and `y` of a vector.
     Component(Axis),
     Contact,
@@ -213,6 +216,7 @@ pub const FUNCTIONS: &[BuiltIn] = &[
     number("ceil", Function::Ceil, Some(Dimension::NONE), NONE),
     special("centroid", (1, 1), Special::Centroid, Rule::Open),
     agent("clearance", Field::Separation(Separation::Clearance), LENGTH),
+    special("column", (2, 2), Special::Column, NONE),
     special("contact", (1, 2), Special::Contact, Rule::Open),
     number("cos", Function::Cos, Some(Dimension::ANGLE), NONE),
     special("count", (1, 1), Special::Count, NONE),
@@ -296,6 +300,7 @@ impl Field {
             Self::VelocityX | Self::VelocityY => Some(Dimension::SPEED),
             Self::DoneAt | Self::Dwell(_) => Some(Dimension::TIME),
             Self::Leg(measure, _) => dimension(Signature::Special(Special::Leg(measure))),
+            Self::Column(_) => Some(Dimension::NONE),
             field => dimension(Signature::Agent(field)),
         }
     }

@@ -123,5 +123,14 @@ fn readings(
         let sum = all.iter().fold((Vec2::zeros(), Vec2::zeros()), |sum, one| (sum.0 + one.0, sum.1 + one.1));
         (!all.is_empty()).then(|| (sum.0 / count, sum.1 / count))
     };
-    judge(&prepared, columns, seen).unwrap_or_else(|_| vec![Reading::Unresolved; columns.len()])
+    let names: Vec<&str> = replay.recording.columns().collect();
+    let told = |tick: u64, column: usize, agent: AgentId| {
+        let ids = &mean.scenario.agents[agent.0 as usize].start.seen;
+        let time = instant.time + tick as f64 * dt;
+        let one =
+            |id: &u32| replay.recording.column(names[column], replay.written(instant.person, *id), time);
+        ids.iter().map(|id| one(id).unwrap_or(f64::NAN)).sum::<f64>() / ids.len() as f64
+    };
+    judge(&prepared, columns, seen, (names.len(), told))
+        .unwrap_or_else(|_| vec![Reading::Unresolved; columns.len()])
 }

@@ -99,6 +99,7 @@ impl Replay {
             files: without_tracks(input, tracks),
             settings: input.settings.to_vec(),
         };
+        replay.files.columns = Some(replay.recording.columns().map(str::to_owned).collect());
         if let Some(site) = site(&replay).map_err(|error| vec![error])? {
             replay.files.site = Some(site);
         }

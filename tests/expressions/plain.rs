@@ -81,6 +81,7 @@ impl Plain<'_> {
                 steps * 0.02
             }
             Field::Mode(_) => -1.0,
+            Field::Column(column) => s.columns.get(column as usize).map_or(f64::NAN, |of| self.of(of, agent)),
         }
     }
 

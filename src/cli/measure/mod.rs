@@ -56,13 +56,13 @@ fn answer(
     let file = inputs::shown(&arguments.tracks);
     let output = arguments.output.as_deref();
     match (arguments.format, output) {
-        (MeasureFormat::Text, _) => output::put(output, &visible(&to_text(&file, &measured)))?,
-        (MeasureFormat::Json, _) => output::put(output, &to_json(&file, &measured))?,
+        (MeasureFormat::Text, _) => output::put(output, &visible(&to_text(file, &measured)))?,
+        (MeasureFormat::Json, _) => output::put(output, &to_json(file, &measured))?,
         (MeasureFormat::Parquet, None) => {
             return Err(complaint::argument("`--format parquet` needs a file", "name it with `-o`").into());
         }
         (other, output) => {
-            let (format, wanted) = (format(other)?, table(&file, &measured));
+            let (format, wanted) = (format(other)?, table(file, &measured));
             match output {
                 Some(path) => {
                     let fill = |out: &mut dyn Write| table::write(format, out, &wanted, rows(&measured));
@@ -79,7 +79,7 @@ fn answer(
         }
     }
     let Some(path) = &arguments.report else { return Ok(Exit::Success) };
-    Ok(page::write(path, to_page(&file, &recording, &measured, sources), colors))
+    Ok(page::write(path, to_page(file, &recording, &measured, sources), colors))
 }
 
 fn format(wanted: MeasureFormat) -> Result<&'static TraceFormat, Diagnostic> {

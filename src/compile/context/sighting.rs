@@ -83,6 +83,8 @@ pub(crate) struct Recordings {
     pub(crate) grouping: Option<Grouping>,
     /// The laws of the site, where they are known.
     pub(crate) site: Option<Site>,
+    /// The other columns of the recording that is shown; `None` where trials are simulated.
+    pub(crate) columns: Option<Vec<String>>,
     /// Agents who are named and not seen, with their stable numbers: they never come.
     pub(crate) unseen: Vec<(AgentId, u32)>,
     /// The recorded persons in use, with the places of their declarations.

@@ -154,6 +154,10 @@ fn call_built_in(
             let who = context.as_agent(sides.0?, agent.span)?;
             return legs::leg(context, (built_in, measure, span), (who, agent.span), (sides.1?, number.span));
         }
+        Signature::Special(Special::Column) if let [agent, column] = arguments => {
+            let typed = context.lower(agent, locals)?;
+            return function::column(context, (typed, agent.span), column);
+        }
         Signature::Special(Special::Flow) if let [line, window] = arguments => {
             let sides = (context.lower(line, locals), context.time(window, locals));
             return traffic::flow(context, built_in, (sides.0?, line.span), (sides.1?, window.span));

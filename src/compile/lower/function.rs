@@ -1,6 +1,8 @@
 //! Built-in functions of values that are lowered.
 
-use crate::compile::context::{Context, Locals, Lowered, Reported, number::Number, typed::Typed};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, number::Number, symbols::unknown, typed::Typed,
+};
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::{
     convert::coordinates,
@@ -10,8 +12,37 @@ use crate::compile::lower::{
 use crate::logic::Term;
 use crate::model::function::{Rule, Signature, Special};
 use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set};
-use crate::syntax::ast::Ident;
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
+
+/// `column(a, pulse)`: the number that a recording has of somebody beside the position.
+pub(crate) fn column(
+    context: &mut Context<'_>,
+    (typed, span): (Typed, Span),
+    column: &Expr,
+) -> Lowered<Typed> {
+    let who = context.as_agent(typed, span)?;
+    let ExprKind::Name(name) = &column.kind else {
+        let error = error!(E0305, column.span, "expected the name of a column of the recording");
+        return context.report(error.hint("write it as the table does: `column(user, pulse)`"));
+    };
+    let Some(known) = &context.tracks.columns else {
+        let said = "nobody knows the columns of a recording in a simulated trial";
+        let hint = "`smc monitor` and `smc measure --number` read them";
+        return context.report(error!(E0715, column.span, "{said}"; hint: "{hint}"));
+    };
+    let Some(number) = known.iter().position(|one| one == name) else {
+        let error = unknown("column", name, column.span, Code::E0715, known.iter().map(String::as_str));
+        let hint = if known.is_empty() {
+            "the recording has no column of numbers beside the positions".to_owned()
+        } else {
+            format!("the recording has {}", known.join(", "))
+        };
+        return context.report(if error.hint.is_some() { error } else { error.hint(hint) });
+    };
+    Ok(Typed::Num(Num::Of(Field::Column(number as u32), who), Dimension::NONE))
+}
 
 /// Functions of one agent, set, region or point.
 pub(crate) fn of_one(

@@ -49,7 +49,7 @@ pub(crate) fn tracks<'a>(
             fields.map(|TrackFields { memory, .. }| Tracks::Live { seen: seen.clone(), memory })
         }
         (None, Some((format, path))) => fields.and_then(|TrackFields { velocity, memory, reading }| {
-            let recording = recording(context, format, path, reading, files)?;
+            let recording = recording(context, format, path, &reading, files)?;
             let velocity = files.velocity.or(velocity).unwrap_or(Velocity::Recorded);
             let recording = recording.with(velocity);
             if let Some(doubt) = recording.doubt() {
@@ -130,7 +130,7 @@ fn recording(
     context: &mut Context<'_>,
     format: &Ident,
     path: &Text,
-    reading: Reading,
+    reading: &Reading,
     files: &Files,
 ) -> Lowered<Recording> {
     let Some(reader) = Format::from_name(&format.name) else {
@@ -139,7 +139,7 @@ fn recording(
         let error = unknown("format", &format.name, format.span, Code::E0702, names.into_iter());
         return context.report(if error.hint.is_some() { error } else { error.hint(hint) });
     };
-    files.recording(&path.value, reader, &reading).or_else(|unread| {
+    files.recording(&path.value, reader, reading).or_else(|unread| {
         context.report(match unread {
             Unread::Missing(reason) => missing(path.span, &reason),
             Unread::Lines(errors) => unreadable(path.span, &errors),

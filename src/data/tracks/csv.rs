@@ -2,7 +2,7 @@
 //!
 //! The header names the columns, in any order and in capitals or not: `id` or `agent`, `x,y`, and either `time` in seconds or `frame`; `vx,vy` may
 //! follow, `trial` where a table has several, and `present`, which is 0 in rows of agents that are absent. Other columns are
-//! ignored. Cells may be separated by semicolons or tabs, and numbers then have commas as decimal points. Lengths are metres. A table with `frame` needs the frames per second. `smc simulate` writes such tables.
+//! kept where they have numbers. Cells may be separated by semicolons or tabs, and numbers then have commas as decimal points. Lengths are metres. A table with `frame` needs the frames per second. `smc simulate` writes such tables.
 
 use super::cells::{cells, records, separator};
 use super::format::Reading;
@@ -26,8 +26,9 @@ pub(super) fn is_person(name: &str) -> bool {
     [COLUMNS[ID], COLUMNS[AGENT]].iter().any(|known| name.eq_ignore_ascii_case(known))
 }
 
-/// The numbers of the columns of a table, from 0, the separator of its cells, and the length of a unit of its lengths, m.
-struct Header([Option<usize>; COLUMNS.len()], char, f64);
+/// The numbers of the columns of a table, from 0, the separator of its cells, the length of a unit of its lengths, m, and the
+/// other columns with their names.
+struct Header([Option<usize>; COLUMNS.len()], char, f64, Vec<(usize, String)>);
 
 /// Units of lengths that may stand behind the name of a column, `x/cm`, and their sizes, m.
 const LENGTHS: [(&str, f64); 3] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
@@ -36,7 +37,7 @@ impl Header {
     fn read(line: usize, record: &str, separator: char) -> Result<Self, Vec<LineError>> {
         let mut places = [None; COLUMNS.len()];
         let mut errors = Vec::new();
-        let mut size = None;
+        let (mut size, mut others) = (None, Vec::new());
         for (k, (column, field)) in cells(record, separator).enumerate() {
             let (field, unit) = match field.split_once('/') {
                 Some((name, unit)) if ["x", "y"].iter().any(|own| name.trim().eq_ignore_ascii_case(own)) => {
@@ -56,6 +57,7 @@ impl Header {
                 size = Some(unit);
             }
             let Some(name) = COLUMNS.iter().position(|name| field.eq_ignore_ascii_case(name)) else {
+                others.push((k, field.trim().to_owned()));
                 continue;
             };
             if places[name].replace(k).is_some() {
@@ -79,7 +81,7 @@ impl Header {
         if vx.is_some() != vy.is_some() {
             errors.push(LineError::whole(line, "the header must have both `vx` and `vy` or neither"));
         }
-        if errors.is_empty() { Ok(Self(places, separator, size.unwrap_or(1.0))) } else { Err(errors) }
+        if errors.is_empty() { Ok(Self(places, separator, size.unwrap_or(1.0), others)) } else { Err(errors) }
     }
 }
 
@@ -109,9 +111,10 @@ pub(super) fn read_columns(text: &str, reading: &Reading) -> Result<Recording, V
     let mut records =
         records(text, separator).filter(|(_, record, _)| columns.is_none() || !record.starts_with('#'));
     let (line, header) = match columns {
-        Some(columns) => {
-            (1, Header::read(0, columns, ',').map(|header| Header(header.0, separator, header.2))?)
-        }
+        Some(columns) => (
+            1,
+            Header::read(0, columns, ',').map(|header| Header(header.0, separator, header.2, header.3))?,
+        ),
         None => {
             let Some((line, first, _)) = records.next() else {
                 return Err(vec![LineError::of_file("the file contains no observation")]);
@@ -139,6 +142,7 @@ pub(super) fn read_columns(text: &str, reading: &Reading) -> Result<Recording, V
         }
     }
     let Some(rate) = rate.filter(|_| has_frames) else { return traces.recording(errors, trial) };
+    let columns = std::mem::take(&mut traces.columns);
     let rows = traces.of_trial(trial).unwrap_or_else(|error| {
         errors.insert(0, error);
         Vec::new()
@@ -149,7 +153,7 @@ pub(super) fn read_columns(text: &str, reading: &Reading) -> Result<Recording, V
     });
     let people = people(framed.collect(), errors, |row| format!("in frame {}", row.frame))?;
     let stride = usual_stride(&people).unwrap_or(1);
-    Ok(Recording::new(people, Clock::film(stride, 1.0 / rate)))
+    Ok(Recording::new(people, Clock::film(stride, 1.0 / rate)).beside(columns))
 }
 
 /// The same lines with commas between the cells.
@@ -165,11 +169,13 @@ fn read_row(
     header: &Header,
     (traces, errors): (&mut Traces, &mut Vec<LineError>),
 ) {
-    let before = errors.len();
+    let (before, mut others) = (errors.len(), Vec::new());
     let mut found: [Option<(usize, Cow<'_, str>)>; COLUMNS.len()] = [const { None }; COLUMNS.len()];
     for (k, cell) in cells(record, header.1).enumerate() {
         if let Some(name) = header.0.iter().position(|place| *place == Some(k)) {
             found[name] = Some(cell);
+        } else if let Some((_, name)) = header.3.iter().find(|(place, _)| *place == k) {
+            others.push((name, number(&pointed(&cell.1, header.1))));
         }
     }
     match &found[PRESENT] {
@@ -185,8 +191,7 @@ fn read_row(
     };
     for (name, value) in values.iter_mut().enumerate() {
         let Some(cell) = &found[name] else { continue };
-        let decimal = if header.1 == ',' { cell.1.clone() } else { cell.1.replace(',', ".").into() };
-        match number(&decimal) {
+        match number(&pointed(&cell.1, header.1)) {
             Err(said) => fault(name, cell, said),
             Ok(number) => {
                 *value = number;
@@ -217,7 +222,17 @@ fn read_row(
         let time = if header.0[FRAME].is_some() { values[1] } else { values[0] };
         let id = found[AGENT].as_ref().map_or(values[ID] as u32, |(_, name)| traces.place(name));
         traces.push(trial, TimedRow { line, time, id, position, velocity });
+        for (name, value) in others {
+            if let Ok(value) = value {
+                traces.columns.push(name, line, value);
+            }
+        }
     }
+}
+
+/// A number with a decimal point; between cells that commas do not separate, it may have a comma.
+fn pointed(cell: &str, separator: char) -> Cow<'_, str> {
+    if separator == ',' { cell.into() } else { cell.replace(',', ".").into() }
 }
 
 #[cfg(test)]

@@ -211,7 +211,7 @@ mod tests {
         ];
         assert_eq!(
             lines.map(|(name, _)| name).to_vec(),
-            Format::all().iter().map(|f| f.name).skip(1).collect::<Vec<_>>()
+            Format::all().iter().map(|f| f.name).skip(2).collect::<Vec<_>>()
         );
         for (name, text) in lines {
             let format = Format::of(text).unwrap();

@@ -1,11 +1,12 @@
 //! Reader of traces as JSON lines, as `smc simulate --format jsonl` writes them: objects with `time` (s), `agent`, `x` and `y`
-//! (m), and perhaps `trial`, `vx` and `vy` (m/s) and `present`. Other members are ignored.
+//! (m), and perhaps `trial`, `vx` and `vy` (m/s) and `present`. Other members are kept where they are numbers.
 
 use super::line::{LineError, json_fault, json_velocity};
 use super::recording::Recording;
 use super::rows::{TimedRow, Traces};
 use crate::base::geometry::{Vec2, coordinate_fault};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 #[derive(Deserialize)]
 struct Line {
@@ -17,6 +18,8 @@ struct Line {
     vx: Option<f64>,
     vy: Option<f64>,
     present: Option<bool>,
+    #[serde(flatten)]
+    others: BTreeMap<String, serde_json::Value>,
 }
 
 #[derive(Deserialize)]
@@ -46,6 +49,11 @@ pub fn read_json_lines(text: &str, trial: Option<u64>) -> Result<Recording, Vec<
                         Name::Number(id) => traces.place(&id.to_string()),
                     };
                     traces.push(read.trial, TimedRow { line, time: read.time, id, position, velocity });
+                    for (name, value) in &read.others {
+                        if let Some(value) = value.as_f64() {
+                            traces.columns.push(name, line, value);
+                        }
+                    }
                 }
             },
         }

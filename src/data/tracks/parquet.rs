@@ -31,6 +31,8 @@ mod with_feature {
 
     /// Most rows of a table: few bytes can claim any number.
     const MOST_ROWS: u64 = 1 << 26;
+    /// The columns of who was where.
+    const OWN: [&str; 8] = ["time", "trial", "agent", "x", "y", "vx", "vy", "present"];
     /// After so many errors the rest of the table is not read.
     const MOST_ERRORS: usize = 20;
 
@@ -110,6 +112,16 @@ mod with_feature {
             return Err(fault);
         }
         traces.push(trial, TimedRow { line, time: number("time")?, id, position, velocity });
+        for (name, field) in row.get_column_iter().filter(|(name, _)| !OWN.contains(&name.as_str())) {
+            let value = match field {
+                Field::Double(value) => *value,
+                Field::Float(value) => f64::from(*value),
+                Field::Long(value) => *value as f64,
+                Field::Int(value) => f64::from(*value),
+                _ => continue,
+            };
+            traces.columns.push(name, line, value);
+        }
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! A recording: who was where, when, and how fast.
 
 use crate::base::geometry::Vec2;
+use std::collections::BTreeMap;
 
 /// Which velocities a recording has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,7 +35,7 @@ const SAME_FRAME: f64 = 0.5;
 const MOVES: f64 = 0.5;
 
 /// One person in one annotated frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// Number of the frame in the film.
     pub frame: u32,
@@ -42,6 +43,42 @@ pub struct Sample {
     pub position: Vec2,
     /// Velocity, m/s; `None` where it is unknown.
     pub velocity: Option<Vec2>,
+    /// The row of the file in which it is written, from 1; 0 where nobody knows.
+    pub row: u32,
+}
+
+/// Samples are the same wherever they are written.
+impl PartialEq for Sample {
+    fn eq(&self, other: &Self) -> bool {
+        (self.frame, self.position, self.velocity) == (other.frame, other.position, other.velocity)
+    }
+}
+
+/// Numbers of a table beside the positions: for each name the rows that have one, ascending, and their values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Columns(BTreeMap<String, Vec<(u32, f64)>>);
+
+impl Columns {
+    /// A number of a row, which comes after those before it.
+    pub(super) fn push(&mut self, name: &str, row: usize, value: f64) {
+        match self.0.get_mut(name) {
+            Some(values) => values.push((row as u32, value)),
+            None => _ = self.0.insert(name.to_owned(), vec![(row as u32, value)]),
+        }
+    }
+
+    /// Adds those of a file whose rows come after the first so many.
+    fn append(&mut self, other: Self, rows: u32) {
+        for (name, values) in other.0 {
+            let values = values.into_iter().map(|(row, value)| (row + rows, value));
+            self.0.entry(name).or_default().extend(values);
+        }
+    }
+
+    fn value(&self, name: &str, row: u32) -> Option<f64> {
+        let values = self.0.get(name)?;
+        values.binary_search_by_key(&row, |(row, _)| *row).ok().map(|at| values[at].1)
+    }
 }
 
 /// One person, with samples of ascending frames.
@@ -94,6 +131,7 @@ pub struct Recording {
     velocities_are_blank: bool,
     /// The last frame of each file of several but the last, and the first of the next.
     joints: Vec<(u32, u32)>,
+    columns: Columns,
 }
 
 /// Time between the last frame of one file and the first of the next, where several are one recording, s.
@@ -115,10 +153,28 @@ impl Recording {
         let velocities_are_blank =
             samples().all(|sample| sample.velocity == Some(Vec2::zeros())) && people.iter().any(moves);
         let velocity = Velocity::Recorded;
-        let joints = Vec::new();
-        let recording = Self { people, frames, clock, velocity, velocities_are_blank: false, joints };
+        let (joints, columns) = (Vec::new(), Columns::default());
+        let recording =
+            Self { people, frames, clock, velocity, velocities_are_blank: false, joints, columns };
         let recording = if all && !velocities_are_blank { recording } else { recording.with(Velocity::Seen) };
         Self { velocities_are_blank, ..recording }
+    }
+
+    /// The same with the other columns of its table.
+    pub(super) fn beside(self, columns: Columns) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// The names of the columns beside the positions that have numbers.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        self.columns.0.keys().map(String::as_str)
+    }
+
+    /// The number of a column for a person at a time, s: that of the last row until then.
+    pub fn column(&self, name: &str, id: u32, time: f64) -> Option<f64> {
+        let (person, frame) = (self.person(id)?, self.frame_at(time)?);
+        let after = person.samples.partition_point(|sample| f64::from(sample.frame) <= frame);
+        self.columns.value(name, person.samples[after.checked_sub(1)?].row)
     }
 
     /// Several recordings as one: each begins a minute after the last frame of the one before. Ids that an earlier one has, too,
@@ -142,14 +198,19 @@ impl Recording {
             // As many whole steps, so that all frames lie on one lattice.
             let steps = gap.max(whole.clock.longest_gap + 1).div_ceil(whole.clock.stride);
             let begin = last + steps * whole.clock.stride;
+            let rows = whole.people.iter().flat_map(|person| &person.samples).map(|sample| sample.row).max();
+            let rows = rows.unwrap_or(0);
             let is_known = part.people.iter().any(|person| whole.person(person.id).is_some());
             let more = if is_known { whole.people.last().map_or(0, |person| person.id + 1) } else { 0 };
             whole.people.extend(part.people.into_iter().map(|mut person| {
                 person.id += more;
-                person.samples.iter_mut().for_each(|sample| sample.frame = sample.frame - first + begin);
+                for sample in &mut person.samples {
+                    (sample.frame, sample.row) = (sample.frame - first + begin, sample.row + rows);
+                }
                 person
             }));
             whole.people.sort_by_key(|person| person.id);
+            whole.columns.append(part.columns, rows);
             whole.frames.extend(part.frames.iter().map(|frame| frame - first + begin));
             whole.joints.push((last, begin));
             whole.velocities_are_blank &= part.velocities_are_blank;
@@ -328,8 +389,12 @@ mod tests {
     use super::*;
 
     fn recording() -> Recording {
-        let sample =
-            |frame, x| Sample { frame, position: Vec2::new(x, 0.0), velocity: Some(Vec2::new(2.0 * x, 1.0)) };
+        let sample = |frame, x| Sample {
+            frame,
+            position: Vec2::new(x, 0.0),
+            velocity: Some(Vec2::new(2.0 * x, 1.0)),
+            row: 0,
+        };
         let people = vec![
             Person { id: 1, samples: vec![sample(10, 0.0), sample(20, 1.0), sample(50, 4.0)] },
             Person { id: 4, samples: vec![sample(20, 8.0)] },

@@ -7,7 +7,7 @@
 //! ```
 
 use super::line::LineError;
-use super::recording::{Clock, Person, Recording, Sample};
+use super::recording::{Clock, Columns, Person, Recording, Sample};
 use crate::base::geometry::Vec2;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -48,7 +48,10 @@ pub(super) fn people(
         errors.sort_by_key(|error| (error.line, error.column));
         return Err(errors);
     }
-    let sample = |row: &Row| Sample { frame: row.frame, position: row.position, velocity: row.velocity };
+    let sample = |row: &Row| {
+        let Row { line, frame, position, velocity, .. } = *row;
+        Sample { frame, position, velocity, row: line as u32 }
+    };
     let person = |track: &[Row]| Person { id: track[0].id, samples: track.iter().map(sample).collect() };
     Ok(rows.chunk_by(|a, b| a.id == b.id).map(person).collect())
 }
@@ -177,6 +180,8 @@ pub(super) struct Traces {
     rows: Vec<(Option<u64>, TimedRow)>,
     names: Vec<String>,
     known: BTreeMap<String, u32>,
+    /// Numbers of other columns, by the lines of their rows.
+    pub(super) columns: Columns,
 }
 
 impl Traces {
@@ -245,12 +250,13 @@ impl Traces {
     /// # Errors
     /// The errors found so far, those of [`Traces::of_trial`], and as for a table with times.
     pub(super) fn recording(
-        self,
+        mut self,
         mut errors: Vec<LineError>,
         wanted: Option<u64>,
     ) -> Result<Recording, Vec<LineError>> {
+        let columns = std::mem::take(&mut self.columns);
         match self.of_trial(wanted) {
-            Ok(rows) => recording(&rows, errors),
+            Ok(rows) => Ok(recording(&rows, errors)?.beside(columns)),
             Err(error) => {
                 errors.insert(0, error);
                 Err(errors)

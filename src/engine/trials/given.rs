@@ -23,6 +23,7 @@ pub fn judge(
     prepared: &PreparedWorld,
     columns: &[usize],
     seen: impl Fn(u64, AgentId) -> Option<(Vec2, Vec2)>,
+    (told, value): (usize, impl Fn(u64, usize, AgentId) -> f64),
 ) -> Result<Vec<Reading>, Fault> {
     let one = |&column: &usize| {
         let mut named = BTreeSet::new();
@@ -42,6 +43,7 @@ pub fn judge(
                 break;
             }
             run.show(tick, |agent| seen(tick, agent));
+            run.tell(told, |column, agent| value(tick, column, agent));
             if monitors.observe(&run, Mask::lane(0)).has(0) {
                 break;
             }

@@ -249,6 +249,10 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
             Some(modes) => view.read(modes, body),
             None => view.splat(-1.0),
         },
+        Reading::Field(Field::Column(column)) => match state.columns.get(column as usize) {
+            Some(numbers) => view.read(numbers, body),
+            None => view.splat(f64::NAN),
+        },
     }
 }
 

@@ -146,6 +146,12 @@ impl<'a> Lowering<'a> {
             Num::Variable(id) => resolved(self.graph.enter(Node::Variable(id.0))),
             Num::Of(Field::Separation(separation), who) => resolved(self.separation(*separation, *who)),
             Num::Of(field @ Field::Dwell(_), who) => resolved(self.dwell(*field, *who)),
+            Num::Of(field @ Field::Column(_), who) => {
+                let id = self.of(Reading::Field(*field), *who);
+                // Only what is no number differs from itself.
+                let known = self.graph.enter(Node::Compare(Comparison::Equal, id, id));
+                Value { id, open: Some(self.not(known)) }
+            }
             Num::Of(field, who) => resolved(self.of(Reading::Field(*field), *who)),
             Num::Coordinate(axis, place) => {
                 let (x, y) = self.point(place);

@@ -60,6 +60,8 @@ pub struct State {
     pub progress: Progress,
     /// Which lines they have crossed, and how long they have been in which region.
     pub passages: Passages,
+    /// Columns of the recording that is shown; NaN in who has no number.
+    pub columns: Vec<Vec<Lanes>>,
     /// States of their behaviours.
     pub behaviours: ActiveModes,
     /// Arrivals of the sources.
@@ -95,6 +97,7 @@ impl State {
             plans: Plans::default(),
             progress: Progress::new(blocks),
             passages: Passages::default(),
+            columns: Vec::new(),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),
             variables: Vec::new(),

@@ -1,4 +1,4 @@
-//! Numbers of encounters, as CommonRoad CriMe collects them (Lin and Althoff, IEEE IV 2023), for bodies that are discs of one
+//! Numbers of encounters, as `CommonRoad` `CriMe` collects them (Lin and Althoff, IEEE IV 2023), for bodies that are discs of one
 //! radius: time to collision, brake threat number, and post-encroachment time.
 
 use crate::base::geometry::Vec2;
@@ -83,6 +83,9 @@ pub struct Passing {
     pub at: f64,
 }
 
+/// When who was where.
+type Visit = (f64, u32, Vec2);
+
 /// For each ordered pair the least post-encroachment time of at most 5 s, by ascending time. Two who touch have none.
 ///
 /// Bodies cover a common place if their centres are at most two radii apart. Centres are looked at each tenth of a second, so a
@@ -90,7 +93,7 @@ pub struct Passing {
 pub fn passings(recording: &Recording, radius: f64) -> Vec<Passing> {
     let reach = 2.0 * radius;
     // Squares of the plane, each with the times and places of those who were there.
-    let mut squares: BTreeMap<(i64, i64), Vec<(f64, u32, Vec2)>> = BTreeMap::new();
+    let mut squares: BTreeMap<(i64, i64), Vec<Visit>> = BTreeMap::new();
     let square = |at: Vec2| ((at.x / reach).floor() as i64, (at.y / reach).floor() as i64);
     let step = recording.step();
     let parts = (step / SPACING).ceil().max(1.0) as u32;

@@ -35,6 +35,8 @@ pub(super) struct Prepared {
     code: Code,
     pub(super) numbers: Vec<Number>,
     readings: Vec<Reading>,
+    /// Other columns that a number may name.
+    columns: Vec<String>,
 }
 
 impl Prepared {
@@ -45,6 +47,7 @@ impl Prepared {
         options: &Measuring,
         frames: usize,
     ) -> Result<Self, Vec<Diagnostic>> {
+        ground.files.columns = Some(recording.columns().map(str::to_owned).collect());
         let people = recording.people().len().max(1);
         let (step, radius) = (recording.step(), options.radius);
         let ticks = frames + (LONGEST_WINDOW / step).ceil() as usize;
@@ -84,7 +87,9 @@ impl Prepared {
         let code = Code::compile(&world.scenario, &[], &world.signals);
         let numbers =
             numbers.into_iter().zip(asked).map(|((name, _), (_, unit))| Number { name, unit }).collect();
-        Ok(Self { program, code, numbers, readings })
+        // Numbers of the scene itself name none.
+        let columns = ground.files.columns.take().filter(|_| !options.numbers.is_empty()).unwrap_or_default();
+        Ok(Self { program, code, numbers, readings, columns })
     }
 
     /// The scene.
@@ -234,6 +239,12 @@ impl<'p> Watched<'p> {
         }
         let slots = &self.slots;
         self.run.show(tick, |AgentId(slot)| slots.get(slot as usize).copied().flatten());
+        let columns = &self.prepared.columns;
+        self.run.tell(columns.len(), |column, AgentId(slot)| {
+            let shown = slots.get(slot as usize).is_some_and(Option::is_some);
+            let person = recording.people().get(slot as usize).filter(|_| shown);
+            person.and_then(|one| recording.column(&columns[column], one.id, time)).unwrap_or(f64::NAN)
+        });
         &self.seen
     }
 

@@ -205,11 +205,35 @@ impl Constrained {
         self.pending = open.iter().map(next).collect();
     }
 
-    /// The choice now, at the end or at a deadline. Where all arms are excluded, there is none.
+    /// The arms that certainly satisfy the constraints, and than which no other one that may can be epsilon better.
+    fn certified(&mut self) -> Vec<usize> {
+        let threshold = self.threshold;
+        let live: Vec<usize> = (0..self.feasible.len()).filter(|arm| self.is_live(*arm)).collect();
+        let is_sure = |arm: &usize| self.feasible[*arm] == Some(true);
+        let sure: Vec<usize> = live.iter().copied().filter(is_sure).collect();
+        let passes = |aim: &mut Aim, arm: usize| {
+            live.iter().all(|rival| *rival == arm || aim.passes(*rival, arm, threshold).1)
+        };
+        sure.into_iter().filter(|arm| passes(&mut self.aim, *arm)).collect()
+    }
+
+    /// The choice now, at the end or at a deadline: of several that carry the certificate the one that deviates least. Where
+    /// all arms are excluded, there is none.
     pub fn choice(&mut self) -> Choice {
         let arms = self.feasible.len();
         if let Some(leader) = self.ahead() {
             self.leader = leader;
+        }
+        let certified = if self.finished { self.certified() } else { Vec::new() };
+        let by_deviation = |a: &&usize, b: &&usize| self.deviations[**a].total_cmp(&self.deviations[**b]);
+        if let Some(least) = certified.iter().min_by(by_deviation)
+            && self.deviations[*least] < self.deviations[self.leader]
+        {
+            self.leader = *least;
+        } else if let Some(first) =
+            certified.iter().find(|arm| self.deviations[**arm] == self.deviations[self.leader])
+        {
+            self.leader = *first;
         }
         let leader = self.leader;
         let others: Vec<usize> = (0..arms).filter(|arm| *arm != leader && self.is_live(*arm)).collect();
@@ -226,7 +250,7 @@ impl Constrained {
             gap,
             open: others,
             beaten: (0..arms).filter(|arm| self.dropped[*arm] && !is_excluded(arm)).collect(),
-            certified: if self.finished && !is_excluded(&leader) { vec![leader] } else { Vec::new() },
+            certified,
             excluded: (0..arms).filter(is_excluded).collect(),
         }
     }

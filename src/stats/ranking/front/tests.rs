@@ -37,15 +37,17 @@ fn is_right(front: &[usize], arms: &[(f64, f64)], epsilon: (f64, f64)) -> bool {
 
 #[test]
 fn a_planted_front_of_sixteen_is_found() {
-    // Six on the front, ten behind it.
+    // Six on the front, eight behind it, and two that tie with others of the front.
     let mut arms: Vec<(f64, f64)> = (0..6).map(|k| (0.2 + 0.12 * f64::from(k), 8.0 - f64::from(k))).collect();
     arms.extend((0..10).map(|k| (0.1 + 0.05 * f64::from(k), 6.0 - 0.5 * f64::from(k))));
+    (arms[14], arms[15]) = (arms[2], arms[4]);
     let mut wrong = 0;
-    for seed in 0..60 {
+    for seed in 0..300 {
         let (front, _) = run(seed, &arms, (0.05, 0.5), 0.1);
         wrong += u32::from(!is_right(&front, &arms, (0.05, 0.5)));
     }
-    assert!(wrong <= 6 + 6, "{wrong} of 60");
+    // 300 at 0.1 and three standard deviations.
+    assert!(wrong <= 30 + 15, "{wrong} of 300");
 }
 
 /// Chains of arms, each covered by the next: whoever is left out is near one of the front.
