@@ -66,6 +66,16 @@ fn numbers_of_three_people_have_closed_forms() {
     assert!(place.call(&["measure", "a.csv", "hall.scn"]).out.contains("nobody was ever in `attic`"));
 }
 
+fn follows_the_schema(json: &Value) {
+    let schema: Value = serde_json::from_str(include_str!("../docs/schema/measure.schema.json")).unwrap();
+    let wrong: Vec<String> = jsonschema::validator_for(&schema)
+        .unwrap()
+        .iter_errors(json)
+        .map(|error| error.to_string())
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
 #[test]
 fn any_number_of_a_state_can_be_measured_and_parameters_are_set() {
     let place = Place::new(&[("a.csv", &three()), ("hall.scn", HALL)]);
@@ -75,6 +85,7 @@ fn any_number_of_a_state_can_be_measured_and_parameters_are_set() {
     let said = place.call(&[&call[..], &["--format", "json", "--from", "1s", "--to", "2s"]].concat());
     let json: Value = said.json();
     assert_eq!((json["frames"].as_u64(), json["persons"].as_u64()), (Some(11), Some(3)));
+    follows_the_schema(&json);
     let of = |name: &str| {
         let all = json["numbers"].as_array().unwrap();
         all.iter().find(|one| one["name"] == name).unwrap()["mean"].as_f64().unwrap()
@@ -214,6 +225,7 @@ fn several_files_are_one_recording() {
     let said = place.call(&["measure", "run-*.csv", "--format", "json"]);
     let json: Value = said.json();
     assert_eq!((json["persons"].as_u64(), json["frames"].as_u64()), (Some(6), Some(162)), "{}", said.err);
+    follows_the_schema(&json);
     // The second begins at 68 s, and at 71 s all of its three persons are there.
     assert!(place.call(&["show", "a.scn"]).out.contains("Agents: 3"));
     let mixed = place.call(&["measure", "*.csv"]);

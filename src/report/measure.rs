@@ -109,7 +109,7 @@ pub fn to_text(file: &str, measured: &Measured) -> String {
     out
 }
 
-/// One object: the summary of each number, and the post-encroachment times.
+/// One object: the summary of each number, and the post-encroachment times; `docs/schema/measure.schema.json` describes it.
 pub fn to_json(file: &str, measured: &Measured) -> String {
     let number = |(k, number): (usize, &crate::replay::measure::Number)| {
         let found = summary(measured, k);
