@@ -41,6 +41,8 @@ impl Builder<'_> {
     }
 
     fn query(&mut self, rule: Rule, mut parts: Parts<'_>, span: Span) -> Option<Query> {
+        // Widths that follow aims.
+        let mut within = Vec::new();
         let kind = match rule {
             Rule::check => QueryKind::Check {
                 measure: self.measure(parts.part(Rule::measure)?)?,
@@ -64,6 +66,9 @@ impl Builder<'_> {
                 let mut measures = Vec::new();
                 while let Some(measure) = parts.part(Rule::measure) {
                     measures.push(self.measure(measure)?);
+                    if let Some(own) = parts.part(Rule::aim_within) {
+                        within.push(self.expr(Parts::of(own).part(Rule::arith)?));
+                    }
                 }
                 QueryKind::Pareto { of, measures }
             }
@@ -83,7 +88,13 @@ impl Builder<'_> {
                 },
             },
         };
-        let clauses = self.clauses(parts)?;
+        let mut clauses = self.clauses(parts)?;
+        if !within.is_empty() {
+            within.extend(clauses.within.take());
+            within.append(&mut clauses.within_others);
+            let mut all = within.into_iter();
+            (clauses.within, clauses.within_others) = (all.next(), all.collect());
+        }
         Some(Query { kind, clauses, span })
     }
 
