@@ -78,3 +78,28 @@ fn a_tail_may_be_bounded_and_a_mean_be_the_score() {
     let choice = ranking.choice();
     assert_eq!((choice.arm, choice.excluded), (1, vec![0]));
 }
+
+/// The largest half of a coin that shows 1 with probability p has the mean 2 p, up to 1.
+#[test]
+fn tails_are_ranked_with_ties() {
+    let heads = [0.05, 0.45, 0.45, 0.15];
+    let mut wrong = 0;
+    for seed in 0..300 {
+        let goal = Goal::Tail((0.0, 1.0), 0.5);
+        let mut ranking = Constrained::new(goal, Vec::new(), (0.4, 0.1), 64, vec![0.0; 4]).unwrap();
+        while !ranking.finished() {
+            for share in ranking.next_round().to_vec() {
+                let score = |index| {
+                    // Each arm has draws of its own.
+                    let key = TrialKey { seed, index, branch: share.arm as u16 };
+                    let draw = Stream::of(key, 1, Purpose::Procedure).uniform(0);
+                    Some(f64::from(u8::from(draw < heads[share.arm])))
+                };
+                let column = (share.from..share.to).map(score).collect();
+                ranking.feed(share.arm, &[column]).unwrap();
+            }
+        }
+        wrong += u32::from(!matches!(ranking.choice().arm, 1 | 2));
+    }
+    assert!(wrong <= 30 + 15, "{wrong} of 300");
+}
