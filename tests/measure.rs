@@ -228,6 +228,8 @@ fn several_files_are_one_recording() {
     follows_the_schema(&json);
     // The second begins at 68 s, and at 71 s all of its three persons are there.
     assert!(place.call(&["show", "a.scn"]).out.contains("Agents: 3"));
+    let unquoted = place.call(&["measure", "run-1.csv", "run-2.csv"]);
+    assert!(unquoted.code == Some(2) && unquoted.err.contains("one in quotes"), "{}", unquoted.err);
     let mixed = place.call(&["measure", "*.csv"]);
     assert!(mixed.code == Some(2) && mixed.err.contains("frames per second"), "{}", mixed.err);
     let none = place.call(&["measure", "no-*.csv"]);

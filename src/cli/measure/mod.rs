@@ -98,6 +98,12 @@ fn format(wanted: MeasureFormat) -> Result<&'static TraceFormat, Diagnostic> {
 /// The scene of the model, if one is given.
 fn ground(arguments: &MeasureCommand, colors: Colors) -> Result<(Ground, Vec<PathBuf>), Vec<Diagnostic>> {
     let Some(scenario) = &arguments.scenario else { return Ok(Default::default()) };
+    let ending = |name: &str| Path::new(name).extension().map(ToOwned::to_owned);
+    if ending(scenario).is_some_and(|own| own != "scn" && ending(&arguments.tracks) == Some(own)) {
+        let said = format!("the model `{scenario}` is a recording as well");
+        let hint = "several recordings are one in quotes: `smc measure 'run-*.csv' hall.scn`";
+        return Err(complaint::argument(said, hint).into());
+    }
     let model = Model {
         scenario: scenario.clone(),
         set: arguments.set.clone(),

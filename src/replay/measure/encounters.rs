@@ -10,6 +10,8 @@ pub const NUMBERS: [(&str, &str); 3] = [("nearest", "m"), ("time_to_collision", 
 
 /// People farther apart than this do not meet, m.
 const FAR: f64 = 10.0;
+/// Two who would touch later than this walk side by side, and rounding alone lets them meet, s.
+const LATEST: f64 = 3600.0;
 /// Post-encroachment times above this are none, s.
 const LONGEST: f64 = 5.0;
 /// Places are looked at this often, s.
@@ -47,7 +49,7 @@ pub fn meetings(seen: &[(Vec2, Vec2)], radius: f64, brake: f64) -> Encounters {
     found
 }
 
-/// The first time at which a point that drifts comes within a reach of the origin; infinite if it never does.
+/// The first time at which a point that drifts comes within a reach of the origin; infinite if it does not within an hour.
 fn time_to_collision(way: Vec2, drift: Vec2, reach: f64) -> f64 {
     let c = way.norm_squared() - reach * reach;
     if c <= 0.0 {
@@ -55,7 +57,8 @@ fn time_to_collision(way: Vec2, drift: Vec2, reach: f64) -> f64 {
     }
     let (a, b) = (drift.norm_squared(), way.dot(&drift));
     let root = b * b - a * c;
-    if b >= 0.0 || root < 0.0 { f64::INFINITY } else { c / (root.sqrt() - b) }
+    let time = if b >= 0.0 || root < 0.0 { f64::INFINITY } else { c / (root.sqrt() - b) };
+    if time > LATEST { f64::INFINITY } else { time }
 }
 
 /// Not a number for two who do not approach each other.
