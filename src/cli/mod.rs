@@ -22,6 +22,7 @@ mod parts;
 mod path;
 mod plot;
 mod progress;
+mod recording;
 mod replay;
 mod shard;
 mod show;

@@ -1,7 +1,7 @@
 //! The options of `smc infer`.
 
-use crate::cli::values::{Print, parse_above_zero, parse_moment, parse_rate, parse_velocity};
-use crate::data::tracks::{Format, Velocity};
+use crate::cli::recording::Recorded;
+use crate::cli::values::{Print, parse_above_zero, parse_moment};
 use crate::perception::Padding;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -11,18 +11,9 @@ use std::path::PathBuf;
 pub(in crate::cli) struct InferCommand {
     /// Recording or table of observations, or `-` for standard input.
     pub(super) tracks: String,
-    /// Format of the file; by default what its first line shows.
-    #[arg(long = "input", value_name = "FORMAT", value_parser = parse_format)]
-    pub(super) input: Option<&'static Format>,
-    /// The columns of a table without a header, with commas: `id,frame,x/cm,y/cm`.
-    #[arg(long, value_name = "NAMES")]
-    pub(super) columns: Option<String>,
-    /// Frames per second of a table with frames.
-    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
-    pub(super) fps: Option<f64>,
-    /// The trial of a table with several.
-    #[arg(long, value_name = "N")]
-    pub(super) trial: Option<u64>,
+    /// How the recording is read.
+    #[command(flatten)]
+    pub(super) recorded: Recorded,
     /// First time.
     #[arg(long, value_name = "TIME", value_parser = parse_moment)]
     pub(super) from: Option<f64>,
@@ -35,9 +26,6 @@ pub(in crate::cli) struct InferCommand {
     /// Annotated groups, one line each, with which the inferred ones are compared.
     #[arg(long, value_name = "FILE")]
     pub(super) annotated: Option<String>,
-    /// Velocities: `recorded` (as observed) or `seen` (the difference from the last position).
-    #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
-    pub(super) velocity: Velocity,
     /// How observations and traces of unequal number are assigned.
     #[arg(long, value_enum, default_value_t = Padding::Gated)]
     pub(super) padding: Padding,
@@ -104,10 +92,4 @@ pub(super) enum InferFormat {
     Csv,
     /// A picture of traces and groups.
     Svg,
-}
-
-/// The format of a recording, by its name.
-pub(in crate::cli) fn parse_format(text: &str) -> Result<&'static Format, String> {
-    let names: Vec<&str> = Format::all().iter().map(|format| format.name).collect();
-    Format::from_name(text).ok_or_else(|| format!("the formats are {}", names.join(", ")))
 }

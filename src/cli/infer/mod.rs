@@ -3,16 +3,17 @@
 mod arguments;
 mod motion;
 
-pub(super) use arguments::{InferCommand, parse_format};
+pub(super) use arguments::InferCommand;
 
 use super::complaint;
 use super::inputs;
 use super::output;
 use super::page;
+use super::recording::{bad_lines, empty};
 use super::terminal::Colors;
 use crate::base::random::TrialKey;
 use crate::base::visible::visible;
-use crate::data::tracks::{Batch, Format, LineError, Reading, Velocity, read_groups};
+use crate::data::tracks::{Batch, Velocity, read_groups};
 use crate::perception::{Clustering, Inferring, Tracking, infer};
 use crate::report::ExitCode as Exit;
 use crate::report::infer::{InferredFile, to_csv, to_json, to_page, to_svg, to_text};
@@ -22,9 +23,6 @@ use arguments::InferFormat;
 use motion::ChosenMotion;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-
-/// Bad lines of a file that are shown.
-const SHOWN: usize = 10;
 
 /// Runs the command.
 pub(super) fn run(arguments: &InferCommand, colors: Colors) -> Exit {
@@ -42,33 +40,22 @@ fn answer(arguments: &InferCommand, colors: Colors) -> Result<Exit, Vec<Diagnost
     let ChosenMotion { mut motion, kind, scene, sources, paths } = motion::chosen(arguments, colors)?;
     let files: Vec<PathBuf> = named.into_iter().flatten().map(PathBuf::from).chain(paths).collect();
     output::guard_all(&[arguments.output.as_deref(), arguments.report.as_deref()], &files)?;
-    let bytes = inputs::read(&arguments.tracks).map_err(complaint::input)?;
-    let named = arguments.columns.as_ref().and_then(|_| Format::from_name("csv"));
-    let Some(format) = arguments.input.or(named).or_else(|| Format::of(&bytes)) else {
-        let said = format!("`{}` is in no known format", inputs::shown(&arguments.tracks));
-        return Err(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`").into());
-    };
-    let reading = Reading {
-        frames_per_second: arguments.fps,
-        trial: arguments.trial,
-        columns: arguments.columns.clone(),
-    };
+    let (bytes, format, reading) = arguments.recorded.open(&arguments.tracks)?;
     let mut batches = format
-        .read_batches(&bytes, &reading, arguments.velocity)
+        .read_batches(&bytes, &reading, arguments.recorded.velocity)
         .map_err(|errors| bad_lines(&arguments.tracks, &errors))?;
-    if let Some(doubt) = format.doubt(&bytes, &reading, arguments.velocity) {
+    if let Some(doubt) = format.doubt(&bytes, &reading, arguments.recorded.velocity) {
         let said = format!("`{}`: {}", inputs::shown(&arguments.tracks), doubt.said);
         let warning = Diagnostic::placeless(Code::W0705, said).hint(doubt.cure);
         complaint::tell(&Diagnostic { severity: Severity::Warning, ..warning }, &[], colors);
     }
     if batches.is_empty() {
-        let said = format!("`{}` contains no observation", inputs::shown(&arguments.tracks));
-        return Err(Diagnostic::placeless(Code::E0702, said).into());
+        return Err(empty(&arguments.tracks).into());
     }
     cut(&mut batches, arguments)?;
     // A file without velocities leaves only the seen ones.
     let has_velocities = batches.iter().flat_map(|batch| &batch.seen).any(|one| one.velocity.is_some());
-    let velocity = if has_velocities { arguments.velocity } else { Velocity::Seen };
+    let velocity = if has_velocities { arguments.recorded.velocity } else { Velocity::Seen };
     let annotated = match &arguments.annotated {
         Some(name) => Some(annotated(name, &batches)?),
         None => None,
@@ -142,16 +129,4 @@ fn annotated(name: &str, batches: &[Batch]) -> Result<Vec<Vec<u32>>, Vec<Diagnos
     let said = format!("`{shown}` names nobody who is in the recording");
     let hint = "write the ids of the recording, a group on each line";
     Err(Diagnostic::placeless(Code::E0703, said).hint(hint).into())
-}
-
-fn bad_lines(name: &str, errors: &[LineError]) -> Vec<Diagnostic> {
-    let name = inputs::shown(name);
-    let shown = errors.iter().take(SHOWN);
-    let mut found: Vec<Diagnostic> =
-        shown.map(|error| Diagnostic::placeless(Code::E0702, format!("`{name}`, {error}"))).collect();
-    if errors.len() > SHOWN {
-        let more = format!("`{name}` has {} more errors", errors.len() - SHOWN);
-        found.push(Diagnostic::placeless(Code::E0702, more));
-    }
-    found
 }

@@ -1,8 +1,7 @@
 //! The options of `smc measure`.
 
-use crate::cli::infer::parse_format;
-use crate::cli::values::{parse_above_zero, parse_moment, parse_rate, parse_velocity};
-use crate::data::tracks::{Format, Velocity};
+use crate::cli::recording::Recorded;
+use crate::cli::values::{parse_above_zero, parse_moment};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -38,21 +37,9 @@ pub(in crate::cli) struct MeasureCommand {
     /// Also search this folder for imports of the scenario. May be given several times.
     #[arg(long = "data", value_name = "DIR", requires = "scenario")]
     pub(super) data: Vec<PathBuf>,
-    /// Format of the recording; by default what its first line shows.
-    #[arg(long = "input", value_name = "FORMAT", value_parser = parse_format)]
-    pub(super) input: Option<&'static Format>,
-    /// The columns of a table without a header, with commas: `id,frame,x/cm,y/cm`.
-    #[arg(long, value_name = "NAMES")]
-    pub(super) columns: Option<String>,
-    /// Frames per second of a table with frames.
-    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
-    pub(super) fps: Option<f64>,
-    /// The trial of a table with several.
-    #[arg(long, value_name = "N")]
-    pub(super) trial: Option<u64>,
-    /// Velocities: `recorded` (as observed) or `seen` (the difference from the last position).
-    #[arg(long, value_name = "WHICH", default_value = "recorded", value_parser = parse_velocity)]
-    pub(super) velocity: Velocity,
+    /// How the recording is read.
+    #[command(flatten)]
+    pub(super) recorded: Recorded,
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = MeasureFormat::Text)]
     pub(super) format: MeasureFormat,

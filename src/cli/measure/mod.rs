@@ -8,24 +8,21 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::page;
+use super::recording::{bad_lines, empty};
 use super::terminal::Colors;
 use super::values::Model;
 use crate::base::visible::visible;
 use crate::compile::is_series;
 use crate::data::table::{self, TraceFormat};
-use crate::data::tracks::{Format, LineError, Reading, Recording};
+use crate::data::tracks::Recording;
 use crate::replay::measure::{Ground, Measuring, measure};
 use crate::report::ExitCode as Exit;
 use crate::report::measure::{rows, table, to_json, to_page, to_text};
-use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Source;
 use arguments::MeasureFormat;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// Bad lines of a file that are shown.
-const SHOWN: usize = 10;
 
 /// Runs the command.
 pub(super) fn run(arguments: &MeasureCommand, colors: Colors) -> Exit {
@@ -135,26 +132,10 @@ fn recording(arguments: &MeasureCommand) -> Result<Recording, Vec<Diagnostic>> {
 
 /// The recording in a file.
 fn one(arguments: &MeasureCommand, file: &str) -> Result<Recording, Vec<Diagnostic>> {
-    let shown = inputs::shown(file);
-    let bytes = inputs::read(file).map_err(complaint::input)?;
-    // A table without a header shows nothing.
-    let named = arguments.columns.as_ref().and_then(|_| Format::from_name("csv"));
-    let Some(format) = arguments.input.or(named).or_else(|| Format::of(&bytes)) else {
-        let said = format!("`{shown}` is in no known format");
-        return Err(Diagnostic::placeless(Code::E0702, said).hint("name it with `--input`").into());
-    };
-    let reading = Reading {
-        frames_per_second: arguments.fps,
-        trial: arguments.trial,
-        columns: arguments.columns.clone(),
-    };
-    let bad = |errors: Vec<LineError>| -> Vec<Diagnostic> {
-        let first = errors.iter().take(SHOWN);
-        first.map(|error| Diagnostic::placeless(Code::E0702, format!("`{shown}`, {error}"))).collect()
-    };
-    let recording = format.read(&bytes, &reading).map_err(bad)?;
+    let (bytes, format, reading) = arguments.recorded.open(file)?;
+    let recording = format.read(&bytes, &reading).map_err(|errors| bad_lines(file, &errors))?;
     if recording.people().is_empty() {
-        return Err(Diagnostic::placeless(Code::E0702, format!("`{shown}` contains no observation")).into());
+        return Err(empty(file).into());
     }
-    Ok(recording.with(arguments.velocity))
+    Ok(recording.with(arguments.recorded.velocity))
 }
