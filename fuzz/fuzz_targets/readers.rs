@@ -11,9 +11,10 @@ fuzz_target!(|text: &str| {
     let _ = read_eth_biwi(text);
     let _ = read_groups(text);
     let _ = read_batch(text);
+    let named = Some("id,frame,x/cm,y/cm".to_owned());
     for format in Format::all() {
-        for frames_per_second in [None, Some(25.0)] {
-            let reading = Reading { frames_per_second, trial: None };
+        for (frames_per_second, columns) in [(None, None), (Some(25.0), None), (Some(25.0), named.clone())] {
+            let reading = Reading { frames_per_second, columns, ..Reading::default() };
             let _ = format.read(text, &reading);
             if let Ok(batches) = format.read_batches(text, &reading, Velocity::Seen) {
                 let _ = infer(&batches, &Inferring::default(), &mut ConstantVelocity);
