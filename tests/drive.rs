@@ -60,7 +60,7 @@ fn legs(legs: Vec<Leg>) -> Route {
 }
 
 fn scenario(agents: Vec<Agent>) -> Scenario {
-    let named = |shape| Region { name: String::new(), shape };
+    let named = |shape| Region::new("", shape);
     let triangle = Polygon::new(vec![p(10.0, 0.0), p(14.0, 0.0), p(12.0, 4.0)]);
     Scenario {
         title: String::new(),

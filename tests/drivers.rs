@@ -56,7 +56,7 @@ fn agent(k: u32, at: Vec2, noise: f64) -> Agent {
 }
 
 fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
-    let region = Region { name: "end".to_owned(), shape: Shape::rectangle(p(10.0, -1.0), p(12.0, 1.0)) };
+    let region = Region::new("end", Shape::rectangle(p(10.0, -1.0), p(12.0, 1.0)));
     let barrier = Barrier { name: String::new(), obstacle: Obstacle::Wall(walls.to_vec()) };
     Scenario {
         title: String::new(),

@@ -45,7 +45,7 @@ fn of_walls(scene: &Crowd, one: &Person, sum: &mut Sum) {
         let nearest: Vec<(Vec2, f64)> = match obstacle {
             Obstacle::Wall(pieces) => pieces.iter().map(|piece| (piece.nearest(one.at), 0.0)).collect(),
             Obstacle::Solid(Shape::Circle { centre, radius }) => vec![(*centre, *radius)],
-            Obstacle::Solid(Shape::Polygon(_)) => panic!("no closed form"),
+            Obstacle::Solid(Shape::Polygon(_) | Shape::Parts(_)) => panic!("no closed form"),
         };
         for (from, radius) in nearest {
             let way = one.at - from;
@@ -83,6 +83,7 @@ fn hides(obstacle: &Obstacle, one: Vec2, other: Vec2) -> bool {
         Obstacle::Wall(pieces) => pieces.iter().any(|piece| piece.meets(&line)),
         Obstacle::Solid(Shape::Circle { centre, radius }) => line.distance(*centre) < *radius,
         Obstacle::Solid(Shape::Polygon(polygon)) => polygon.segments().any(|edge| edge.meets(&line)),
+        Obstacle::Solid(Shape::Parts(_)) => unreachable!("obstacles have one part"),
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod ahead;
 mod aims;
+mod buildings;
 mod chance;
 mod circles;
 mod claims;

@@ -16,7 +16,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 30] = [
+const PAIRS: [(&str, &str); 31] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -27,6 +27,7 @@ const PAIRS: [(&str, &str); 30] = [
     pair!("door"),
     pair!("epidemic"),
     pair!("exits"),
+    pair!("floor"),
     pair!("hall"),
     pair!("hotel"),
     pair!("hotel-any"),

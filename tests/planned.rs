@@ -348,7 +348,7 @@ fn blocks(number: u32) -> Scene {
         let size = Vec2::new(0.5 + 3.5 * w, 0.5 + 3.5 * h);
         Barrier { name: String::new(), obstacle: Obstacle::Solid(Shape::rectangle(low, low + size)) }
     };
-    let all = Region { name: "all".into(), shape: Shape::rectangle(Vec2::zeros(), Vec2::new(30.0, 30.0)) };
+    let all = Region::new("all", Shape::rectangle(Vec2::zeros(), Vec2::new(30.0, 30.0)));
     Scene { barriers: (0..10).map(block).collect(), regions: vec![all], ..Scene::default() }
 }
 

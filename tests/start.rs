@@ -73,7 +73,7 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
                 wall(p(0.0, 4.0), p(20.0, 4.0)),
                 Barrier { name: "pillar".into(), obstacle: pillar },
             ],
-            regions: vec![Region { name: "west".into(), shape: Shape::rectangle(p(0.0, 0.0), p(1.0, 4.0)) }],
+            regions: vec![Region::new("west", Shape::rectangle(p(0.0, 0.0), p(1.0, 4.0)))],
             ..Scene::default()
         },
         agents,

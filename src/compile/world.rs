@@ -169,11 +169,13 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
     context.tracks.columns.clone_from(&files.columns);
     stepping::settle_gaits(context, file, files);
     let (mut barrier, mut line) = (0, 0);
+    let mut doors = Vec::new();
     for item in &file.items {
         if let Item::Scene(items) = item {
-            scene::settle_scene(context, items, files, (&mut barrier, &mut line));
+            doors.extend(scene::settle_scene(context, items, files, (&mut barrier, &mut line)));
         }
     }
+    scene::doors::set(context, &doors);
     let mut people = People::default();
     for item in &file.items {
         match item {

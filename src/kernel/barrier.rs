@@ -39,6 +39,8 @@ impl Surface {
                 Form::Polygon(Edges::new(polygon.segments())),
                 Bounds::around(polygon.segments().map(|s| s.a))?,
             ),
+            // Obstacles have one part.
+            Obstacle::Solid(Shape::Parts(_)) => return None,
         };
         Some(Self { form, bounds })
     }

@@ -44,13 +44,16 @@ pub struct Body {
     pub planner: Option<Arc<Planner>>,
     /// How it steps, if it does.
     pub stepper: Option<Arc<Stepper>>,
+    /// How long it stands before it sets out on its route, s.
+    pub premovement: Option<Law>,
     laws: [Law; Parameter::COUNT],
 }
 
 impl Body {
     /// Of a kind, with these laws; it finds its way.
     pub fn new(kind: Kind, law: impl FnMut(Parameter) -> Law) -> Self {
-        Self { kind, finds_ways: true, planner: None, stepper: None, laws: Parameter::ALL.map(law) }
+        let laws = Parameter::ALL.map(law);
+        Self { kind, finds_ways: true, planner: None, stepper: None, premovement: None, laws }
     }
 
     /// The number of the draw of a parameter: its own, but for a preferred speed that is a share of the largest one.

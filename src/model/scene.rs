@@ -1,5 +1,6 @@
 //! The scene: what stands still.
 
+use super::agent::Goal;
 use super::period::Periods;
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use std::borrow::Cow;
@@ -37,6 +38,16 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether whoever goes to a goal chooses the quickest of several exits.
+    pub fn chooses(&self, goal: &Goal) -> bool {
+        match goal {
+            Goal::Region(id) => {
+                self.regions.get(id.0 as usize).is_some_and(|region| !region.exits.is_empty())
+            }
+            Goal::Point(_) => false,
+        }
+    }
+
     /// The pieces of all walls.
     pub fn walls(&self) -> impl Iterator<Item = &Segment> + Clone {
         self.barriers.iter().flat_map(|barrier| match &barrier.obstacle {
@@ -87,17 +98,31 @@ pub struct Barrier {
 pub enum Obstacle {
     /// Segments, passable on neither side, without an inside.
     Wall(Vec<Segment>),
-    /// A solid disc or polygon; in the holes of a polygon one can stand.
+    /// A solid disc or polygon, of one part; in the holes of a polygon one can stand.
     Solid(Shape),
 }
 
 /// A named part of the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// Its name.
+    /// Its name; `nearest(west, east)` of one that only a route names.
     pub name: String,
     /// Its extent.
     pub shape: Shape,
+    /// The regions among which whoever goes there chooses the quickest; none where the nearest place of the shape is the goal.
+    pub exits: Vec<RegionId>,
+}
+
+impl Region {
+    /// Of a name, with an extent.
+    pub fn new(name: impl Into<String>, shape: Shape) -> Self {
+        Self { name: name.into(), shape, exits: Vec::new() }
+    }
+
+    /// Whether the scene declares it.
+    pub fn is_declared(&self) -> bool {
+        !self.name.ends_with(')')
+    }
 }
 
 impl Barrier {
@@ -155,6 +180,7 @@ impl Obstacle {
                 }
             }
             Self::Solid(Shape::Polygon(polygon)) => polygon.nearest_on_outline(p),
+            Self::Solid(shape @ Shape::Parts(_)) => shape.nearest(p),
         }
     }
 
@@ -162,11 +188,7 @@ impl Obstacle {
     pub fn distance(&self, p: Vec2) -> f64 {
         match self {
             Self::Wall(segments) => segments.iter().map(|s| s.distance(p)).fold(f64::INFINITY, f64::min),
-            Self::Solid(Shape::Circle { centre, radius }) => (p - centre).norm() - radius,
-            Self::Solid(Shape::Polygon(polygon)) => {
-                let distance = (p - polygon.nearest_on_outline(p)).norm();
-                if polygon.contains(p) { -distance } else { distance }
-            }
+            Self::Solid(shape) => -shape.depth(p),
         }
     }
 }

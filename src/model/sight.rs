@@ -81,13 +81,20 @@ impl Sight {
     pub fn new(scene: &Scene) -> Self {
         let mut pieces = Vec::new();
         for barrier in scene.unrolled().iter() {
-            match &barrier.obstacle {
-                Obstacle::Wall(segments) => pieces.extend(segments.iter().copied().map(Piece::Edge)),
-                Obstacle::Solid(Shape::Polygon(polygon)) => {
-                    pieces.extend(polygon.segments().map(Piece::Edge));
+            let shape = match &barrier.obstacle {
+                Obstacle::Wall(segments) => {
+                    pieces.extend(segments.iter().copied().map(Piece::Edge));
+                    continue;
                 }
-                Obstacle::Solid(Shape::Circle { centre, radius }) => {
-                    pieces.push(Piece::Disc { centre: *centre, radius: *radius });
+                Obstacle::Solid(shape) => shape,
+            };
+            for part in shape.parts() {
+                match part {
+                    Shape::Polygon(polygon) => pieces.extend(polygon.segments().map(Piece::Edge)),
+                    Shape::Circle { centre, radius } => {
+                        pieces.push(Piece::Disc { centre: *centre, radius: *radius });
+                    }
+                    Shape::Parts(_) => {}
                 }
             }
         }

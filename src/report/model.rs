@@ -116,7 +116,7 @@ fn scene(out: &mut String, scenario: &Scenario) {
             Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(solid)),
         };
     }
-    for region in &scenario.scene.regions {
+    for region in scenario.scene.regions.iter().filter(|region| region.is_declared()) {
         let _ = writeln!(out, "  region {}: {}", region.name, shape(&region.shape));
     }
     for (name, at) in &scenario.scene.points {
@@ -338,6 +338,7 @@ fn point(p: Vec2) -> String {
 
 fn shape(shape: &Shape) -> String {
     match shape {
+        Shape::Parts(parts) => parts.iter().map(self::shape).collect::<Vec<_>>().join(", "),
         Shape::Circle { centre, radius } => format!("circle {} radius {} m", point(*centre), number(*radius)),
         Shape::Polygon(polygon) => {
             let corners = polygon.outline.len();

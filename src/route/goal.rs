@@ -47,7 +47,7 @@ impl Entry {
             Goal::Point(point) => return Some(Self { marks: vec![Mark::Point(*point)], region: None }),
             Goal::Region(id) => scene.regions.get(id.0 as usize)?.shape.clone(),
         };
-        let marks = match &region {
+        let marks = |part: &Shape| match part {
             Shape::Circle { centre, radius: of_region } => {
                 vec![Mark::Disc { centre: *centre, radius: (of_region - radius).max(0.0) }]
             }
@@ -60,7 +60,10 @@ impl Entry {
                 }
                 None => sides(&polygon.outline).collect(),
             },
+            // Parts have no parts.
+            Shape::Parts(_) => Vec::new(),
         };
+        let marks = region.parts().iter().flat_map(marks).collect();
         Some(Self { marks, region: Some(region) })
     }
 

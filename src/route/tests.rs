@@ -24,7 +24,7 @@ fn solid(shape: Shape) -> Barrier {
 }
 
 fn atlas(barriers: Vec<Barrier>, region: Option<Shape>) -> Atlas {
-    let regions = region.map(|shape| Region { name: String::new(), shape }).into_iter().collect();
+    let regions = region.map(|shape| Region::new("", shape)).into_iter().collect();
     Atlas::new(Scene { barriers, regions, ..Scene::default() })
 }
 

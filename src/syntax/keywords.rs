@@ -63,7 +63,7 @@ const fn within(word: &'static str) -> Keyword {
 }
 
 /// The keywords; of those that begin the items of a part hints name them in this order.
-pub const KEYWORDS: [Keyword; 84] = [
+pub const KEYWORDS: [Keyword; 85] = [
     starting("scenario", &[Scenario], Declares::Nothing),
     starting("horizon", &[Scenario], Declares::Nothing),
     starting("step", &[Scenario], Declares::Nothing),
@@ -98,6 +98,7 @@ pub const KEYWORDS: [Keyword; 84] = [
     starting("region", &[Scene], Declares::Thing),
     starting("point", &[Scene], Declares::Thing),
     starting("line", &[Scene], Declares::Thing),
+    starting("door", &[Scene], Declares::Thing),
     starting("import", &[Scene], Declares::Nothing),
     starting("periodic", &[Scene], Declares::Nothing),
     starting("after", &[State], Declares::Nothing),

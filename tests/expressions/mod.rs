@@ -28,7 +28,7 @@ fn p(x: f64, y: f64) -> Vec2 {
 fn scene() -> Scene {
     let mut ring = Polygon::rectangle(p(2.0, 1.0), p(5.0, 4.0));
     ring.holes.push(Polygon::new(vec![p(3.0, 2.0), p(4.0, 2.0), p(3.5, 3.0)]).outline);
-    let region = |shape| Region { name: String::new(), shape };
+    let region = |shape| Region::new("", shape);
     let barrier = |obstacle| Barrier { name: String::new(), obstacle };
     Scene {
         regions: vec![

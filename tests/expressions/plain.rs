@@ -207,6 +207,7 @@ impl Plain<'_> {
                         least(across, least(at.y - 0.5, 3.0 - at.y))
                     }
                     Shape::Polygon(polygon) => (at - polygon.nearest_on_outline(at)).norm(),
+                    Shape::Parts(_) => unreachable!("the regions have one part"),
                 }
             }
             Num::OfTwo(pair, a, b) => {

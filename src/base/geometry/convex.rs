@@ -88,6 +88,7 @@ impl Convex {
                 let holes = holes.iter().map(|hole| self.with_ring(hole, origin)).sum::<f64>();
                 self.with_ring(outline, origin) - holes
             }
+            Shape::Parts(parts) => parts.iter().map(|part| self.shared_area(part, origin)).sum(),
         }
     }
 

@@ -47,18 +47,17 @@ impl Segment {
         ends.min(other.distance(self.a)).min(other.distance(self.b))
     }
 
-    /// Whether the two segments have a point in common.
-    pub fn meets(&self, other: &Self) -> bool {
+    /// Whether the two segments cross between their ends.
+    pub fn crosses(&self, other: &Self) -> bool {
         let turn = |a, b, c| cross(b - a, c - a);
         let (d1, d2) = (turn(other.a, other.b, self.a), turn(other.a, other.b, self.b));
         let (d3, d4) = (turn(self.a, self.b, other.a), turn(self.a, self.b, other.b));
-        if ((d1 > 0.0) != (d2 > 0.0))
-            && ((d3 > 0.0) != (d4 > 0.0))
-            && d1 != 0.0
-            && d2 != 0.0
-            && d3 != 0.0
-            && d4 != 0.0
-        {
+        d1 * d2 < 0.0 && d3 * d4 < 0.0
+    }
+
+    /// Whether the two segments have a point in common.
+    pub fn meets(&self, other: &Self) -> bool {
+        if self.crosses(other) {
             return true;
         }
         let touches = |s: &Self, p: Vec2| s.distance(p) == 0.0;

@@ -51,6 +51,8 @@ pub(crate) struct Kind {
     /// Where the steps of its walkers come from, and how they are chosen, if they step.
     pub(crate) gait: GaitRule,
     pub(crate) search: SearchRule,
+    /// How long they stand before they set out.
+    pub(crate) premovement: Option<Law>,
     /// A law for each parameter.
     pub(crate) laws: [Option<Law>; Parameter::COUNT],
 }
@@ -63,6 +65,7 @@ impl Default for Kind {
             planning: Planning::default(),
             gait: GaitRule::default(),
             search: SearchRule::default(),
+            premovement: None,
             laws: [const { None }; Parameter::COUNT],
         }
     }

@@ -15,6 +15,7 @@ pub(crate) mod observed;
 pub(crate) mod parts;
 pub(crate) mod people;
 pub(crate) mod phrase;
+pub(crate) mod plans;
 pub(crate) mod processes;
 pub(crate) mod roster;
 pub(crate) mod sighting;
@@ -36,6 +37,7 @@ use crate::compile::context::{
     number::Number,
     observed::{Margins, Observed},
     parts::Origins,
+    plans::FloorPlan,
     processes::Declared,
     roster::Roster,
     sighting::Recordings,
@@ -67,6 +69,8 @@ pub(crate) struct Context<'a> {
     pub(crate) kinds: BTreeMap<String, Lowered<Kind>>,
     /// The scene.
     pub(crate) scene: Scene,
+    /// The floor plans that have a name.
+    pub(crate) plans: Vec<FloorPlan>,
     /// Processes so far.
     pub(crate) processes: Vec<Declared<'a>>,
     /// Behaviours, and who has them.
@@ -104,6 +108,7 @@ impl<'a> Context<'a> {
             shapes: Vec::new(),
             kinds: BTreeMap::new(),
             scene: Scene::default(),
+            plans: Vec::new(),
             processes: Vec::new(),
             conducts: Conducts::default(),
             roster: Roster::default(),

@@ -42,6 +42,8 @@ pub(crate) enum Meaning<'a> {
     Line(LineId),
     /// A named point.
     Point(&'a Expr),
+    /// A floor plan.
+    Plan(usize),
     /// A kind.
     Kind(&'a KindDecl),
     /// A recording.
@@ -107,6 +109,7 @@ impl Meaning<'_> {
             Self::Barrier(_) => "a wall or obstacle",
             Self::Line(_) => "a line",
             Self::Point(_) => "a point",
+            Self::Plan(_) => "a floor plan",
             Self::Kind(_) => "a kind",
             Self::Tracks(_) => "a recording",
             Self::Process(_) => "a process",

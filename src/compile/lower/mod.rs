@@ -21,6 +21,7 @@ pub(crate) mod misspelt;
 pub(crate) mod modes;
 pub(crate) mod name;
 pub(crate) mod observing;
+pub(crate) mod plans;
 pub(crate) mod process_names;
 pub(crate) mod quantifier;
 pub(crate) mod robustness;
@@ -148,8 +149,14 @@ impl Context<'_> {
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;
                 Ok(Typed::Num(if field.name == "x" { x } else { y }, dimension))
             }
-            ExprKind::Member(base, member) => name::lower_member(self, base, member, locals),
-            ExprKind::Index(base, index) => name::lower_index(self, base, index, locals),
+            ExprKind::Member(base, member) => match plans::named(self, base, locals) {
+                Some(plan) => plans::part(self, plan, &member.name, member.span),
+                None => name::lower_member(self, base, member, locals),
+            },
+            ExprKind::Index(base, index) => match (plans::named(self, base, locals), &index.kind) {
+                (Some(plan), ExprKind::Text(name)) => plans::part(self, plan, name, index.span),
+                _ => name::lower_index(self, base, index, locals),
+            },
             ExprKind::Call { function, arguments } => {
                 call::lower_call(self, expr, function, arguments, locals)
             }

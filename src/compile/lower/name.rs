@@ -87,6 +87,9 @@ pub(crate) fn lower_name(
             let lowered = timeless(this, value, &Locals::of(scope));
             this.unchanging(lowered, value)
         }),
+        Meaning::Plan(_) => context
+            .report(error!(E0206, span, "expected a value, but `{name}` is a floor plan";
+            hint: "name a part of it: `{name}.foyer`, `{name}[\"Room 12\"]`")),
         Meaning::Param(Param { choices, .. }) if !choices.is_empty() => {
             let said = format!("`{name}` is a choice, not a number");
             context.report(

@@ -43,6 +43,10 @@ pub(crate) fn region_shape(context: &mut Context<'_>, id: RegionId, span: Span) 
 pub(crate) fn lower_shape(context: &mut Context<'_>, shape: &ShapeExpr, locals: &Locals) -> Lowered<Shape> {
     match shape {
         ShapeExpr::Named(name) => named_shape(context, name),
+        ShapeExpr::Of(room) => match context.lower(room, locals)? {
+            Typed::Region(id) => region_shape(context, id, room.span),
+            found => context.mismatch(room.span, "a region", &found),
+        },
         ShapeExpr::Circle { centre, radius, span } => {
             let middle = point_of(context, centre, locals);
             let size = context.number_of(radius, Dimension::LENGTH, locals)?;
@@ -61,6 +65,10 @@ pub(crate) fn lower_shape(context: &mut Context<'_>, shape: &ShapeExpr, locals: 
                 return context.report(error!(E0401, *span, "the rectangle has no area"));
             }
             Ok(Shape::rectangle(a.inf(&b), a.sup(&b)))
+        }
+        ShapeExpr::Parts(parts) => {
+            let shapes: Vec<_> = parts.iter().map(|part| lower_shape(context, part, locals)).collect();
+            joined(context, parts.iter().map(ShapeExpr::span).zip(shapes).collect())
         }
         ShapeExpr::Polygon { outline, holes, span } => {
             let ring = |this: &mut Context<'_>, points: &[Expr]| -> Lowered<Vec<Vec2>> {
@@ -93,6 +101,23 @@ pub(crate) fn lower_shape(context: &mut Context<'_>, shape: &ShapeExpr, locals: 
             Ok(Shape::Polygon(polygon))
         }
     }
+}
+
+/// One shape of several that share no area.
+pub(crate) fn joined(context: &mut Context<'_>, written: Vec<(Span, Lowered<Shape>)>) -> Lowered<Shape> {
+    let mut parts: Vec<(Span, Shape)> = Vec::new();
+    for (span, shape) in written {
+        // Parts have no parts.
+        for part in shape?.parts() {
+            if let Some((first, _)) = parts.iter().find(|(_, other)| other.overlaps(part)) {
+                let error = error!(E0401, span, "two parts of the region overlap";
+                    hint: "give each part an area of its own");
+                return context.report(error.related(*first, "the other part"));
+            }
+            parts.push((span, part.clone()));
+        }
+    }
+    Ok(Shape::Parts(parts.into_iter().map(|(_, part)| part).collect()))
 }
 
 /// A place known at compile time, m.

@@ -8,7 +8,7 @@ use crate::compile::context::{
 };
 use crate::compile::lower::choices;
 use crate::compile::lower::laws;
-use crate::compile::people::{planners, refused, stepping};
+use crate::compile::people::{planners, refused, routes, stepping};
 use crate::compile::presets::{PRESETS, Preset, law};
 use crate::compile::scene::periodic;
 use crate::model::{self, Body, Law, Parameter, Planner, Stepper};
@@ -23,7 +23,10 @@ use std::sync::Arc;
 const WAYFINDING: &str = "wayfinding";
 const WAYS: [&str; 2] = ["shortest", "straight"];
 
-/// The fields of a kind that are no parameters.
+/// The field of the time that somebody stands before they set out.
+const PREMOVEMENT: &str = "premovement";
+
+/// The fields of a kind that are no parameters, but for its `premovement`.
 fn fields_of(kind: model::Kind) -> &'static [&'static str] {
     match kind {
         model::Kind::Sfm | model::Kind::Cfs => &[WAYFINDING],
@@ -139,6 +142,7 @@ pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Ki
             continue;
         }
         let known = Parameter::of_kind(base).map(Parameter::name).chain(fields_of(base).iter().copied());
+        let known = known.chain([PREMOVEMENT]);
         let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
         context.note(error);
         // The words of a field that other kinds have are no names.
@@ -180,6 +184,14 @@ pub(crate) fn parameters<'f>(
                 }),
             };
             context.given_up |= taken.is_err();
+            continue;
+        }
+        if field.name.name == PREMOVEMENT {
+            let law = routes::waiting(context, &field.value, locals, "a premovement");
+            context.given_up |= law.is_err();
+            if let (Some(kind), Ok(law)) = (&mut kind, law) {
+                kind.premovement = Some(law);
+            }
             continue;
         }
         let known = match &kind {
@@ -236,6 +248,7 @@ pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowe
     });
     let is_planned = kind.base == model::Kind::Planned;
     body.finds_ways = !kind.straight && matches!(kind.base, model::Kind::Sfm | model::Kind::Cfs);
+    body.premovement.clone_from(&kind.premovement);
     body.stepper = (kind.base == model::Kind::Stepped).then(|| {
         let sets_speed = kind.laws[Parameter::Speed as usize].is_some();
         Arc::new(Stepper { gait: kind.gait.clone(), search: kind.search, sets_speed })

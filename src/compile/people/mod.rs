@@ -15,7 +15,7 @@ pub(crate) mod step;
 pub(crate) mod stepping;
 pub(crate) mod tracks;
 
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Shape, Vec2};
 use crate::compile::behaviour::attachment;
 use crate::compile::context::{
     Context, Locals, Lowered,
@@ -28,7 +28,7 @@ use crate::compile::context::{
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::laws;
 use crate::compile::people::intended::{Intended, STANDS, parted};
-use crate::model::{Agent, AgentId, Body, Law, Parameter, Route, Source, Start};
+use crate::model::{Agent, AgentId, Body, Goal, Law, Leg, Parameter, Route, Source, Start};
 use crate::syntax::ast::{AgentsDecl, Expr, Field, Ident};
 use crate::syntax::codes::Code;
 use std::sync::Arc;
@@ -123,6 +123,25 @@ pub(crate) fn members(
         .map(|k| {
             let text = if plural { format!("{}[{}]", name.name, k + 1) } else { name.name.clone() };
             let (body, start, route) = each(k);
+            let route = match (&body.premovement, route) {
+                (Some(law), Route::Legs { mut legs, then_leave }) if !legs.is_empty() => {
+                    legs.insert(0, Leg::Wait(law.clone()));
+                    Route::Legs { legs, then_leave }
+                }
+                (_, route) => route,
+            };
+            let chooses = |goal: &Goal| match goal {
+                Goal::Region(id) => {
+                    matches!(context.scene.regions[id.0 as usize].shape, Shape::Parts(_))
+                }
+                Goal::Point(_) => false,
+            };
+            let is_led = body.planner.is_some() || body.stepper.is_some();
+            if k == 0 && is_led && route.goals().any(chooses) {
+                let error = error!(E0408, name.span, "`{}` walks on planned paths or by steps, and cannot choose between exits", name.name;
+                    hint: "name one region as the goal");
+                context.note(error);
+            }
             // Equal bodies are kept once.
             let body = match &shared {
                 Some(known) if **known == *body => known.clone(),

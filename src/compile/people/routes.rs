@@ -10,7 +10,7 @@ use crate::compile::lower::{
     shapes,
 };
 use crate::compile::scene::periodic;
-use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
+use crate::model::{AgentId, Goal, Law, Leg, Move, Moves, Region, RegionId, Route, Who};
 use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
@@ -19,6 +19,10 @@ use crate::syntax::source::Span;
 const MOST_OPTIONS: usize = 1000;
 /// Most alternatives of a `paths` declaration.
 const MOST_PATHS: i64 = 64;
+/// The goals that are one of several exits.
+const CHOICES: [&str; 2] = ["nearest", QUICKEST];
+/// The one that counts those who wait.
+const QUICKEST: &str = "quickest";
 
 /// A route as written.
 pub(crate) fn route(context: &mut Context<'_>, value: &Value, locals: &Locals) -> Lowered<Route> {
@@ -33,18 +37,7 @@ pub(crate) fn route(context: &mut Context<'_>, value: &Value, locals: &Locals) -
             for leg in &route.legs {
                 legs.push(match leg {
                     ast::Leg::Goal(expr) => goal(context, expr, locals).map(Leg::To),
-                    ast::Leg::Wait(value) => {
-                        let law = laws::law(context, value, Dimension::TIME, locals);
-                        match law {
-                            Ok(law) if law.bounds().0 < 0.0 => {
-                                let at = value.span();
-                                let said = "a waiting time cannot be negative";
-                                let text = context.text(at);
-                                context.report(advise_bounds(error!(E0405, at, "{said}"), &law, &text))
-                            }
-                            law => law.map(Leg::Wait),
-                        }
-                    }
+                    ast::Leg::Wait(value) => waiting(context, value, locals, "a waiting time").map(Leg::Wait),
                 });
             }
             let legs: Vec<Leg> = legs.into_iter().collect::<Lowered<_>>()?;
@@ -60,6 +53,17 @@ pub(crate) fn route(context: &mut Context<'_>, value: &Value, locals: &Locals) -
     }
 }
 
+/// A time that somebody stands, not negative; `what` is its name in the error.
+pub(crate) fn waiting(context: &mut Context<'_>, value: &Value, locals: &Locals, what: &str) -> Lowered<Law> {
+    let law = laws::law(context, value, Dimension::TIME, locals)?;
+    if law.bounds().0 < 0.0 {
+        let (at, said) = (value.span(), format!("{what} cannot be negative"));
+        let text = context.text(at);
+        return context.report(advise_bounds(error!(E0405, at, "{said}"), &law, &text));
+    }
+    Ok(law)
+}
+
 pub(crate) fn goal(context: &mut Context<'_>, expr: &Expr, locals: &Locals) -> Lowered<Goal> {
     // People are not known yet where routes are settled, and never are goals.
     if let ast::ExprKind::Name(name) = &expr.kind
@@ -70,11 +74,54 @@ pub(crate) fn goal(context: &mut Context<'_>, expr: &Expr, locals: &Locals) -> L
         let said = format!("expected a region or a point as a goal, found {}", meaning.noun());
         return context.report(error!(E0305, expr.span, "{said}"));
     }
+    if let ast::ExprKind::Call { function, arguments } = &expr.kind
+        && CHOICES.contains(&function.name.as_str())
+        && context.look_up(&function.name, locals.scope).is_none()
+    {
+        return choice(context, (function, expr.span), arguments, locals);
+    }
     match context.lower(expr, locals)? {
         Typed::Region(id) => Ok(Goal::Region(id)),
         Typed::Point(x, y) => shapes::place(context, expr.span, (x, y)).map(Goal::Point),
         found => context.mismatch(expr.span, "a region or a point as a goal", &found),
     }
+}
+
+/// `nearest(west, east)`, `quickest(west, east)`: a region that nobody declares, made of the exits.
+fn choice(
+    context: &mut Context<'_>,
+    (function, span): (&Ident, Span),
+    exits: &[Expr],
+    locals: &Locals,
+) -> Lowered<Goal> {
+    let name = &function.name;
+    let lowered = context.lower_all(exits, locals)?;
+    if exits.len() < 2 {
+        let hint = match exits {
+            [one] => format!("write the region alone: `route = {}`", context.text(one.span)),
+            _ => format!("name the exits: `route = {name}(west, east)`"),
+        };
+        return context.report(error!(E0204, span, "`{name}` needs two exits or more"; hint: "{hint}"));
+    }
+    let mut ids = Vec::new();
+    let mut shapes = Vec::new();
+    for (exit, typed) in exits.iter().zip(lowered) {
+        let Typed::Region(id) = typed else {
+            return context.mismatch(exit.span, "a region as an exit", &typed);
+        };
+        shapes.push((exit.span, shapes::region_shape(context, id, exit.span)));
+        ids.push(id);
+    }
+    let names: Vec<&str> = ids.iter().map(|id| context.scene.regions[id.0 as usize].name.as_str()).collect();
+    let text = format!("{name}({})", names.join(", "));
+    if let Some(known) = context.scene.regions.iter().position(|region| region.name == text) {
+        return Ok(Goal::Region(RegionId(known as u32)));
+    }
+    let shape = shapes::joined(context, shapes)?;
+    let exits = if name == QUICKEST { ids } else { Vec::new() };
+    context.shapes.push(Some(Ok(shape.clone())));
+    context.scene.regions.push(Region { exits, ..Region::new(text, shape) });
+    Ok(Goal::Region(RegionId(context.scene.regions.len() as u32 - 1)))
 }
 
 /// The moves of a scenario; each agent has one list of them.

@@ -1,18 +1,25 @@
 //! The scene: walls, obstacles, regions.
 
+pub(crate) mod doors;
 pub(crate) mod imports;
 pub(crate) mod periodic;
 
 use crate::base::geometry::{Segment, Shape, Vec2};
-use crate::compile::context::{Context, Locals, Lowered, Reported, entry, symbols::Meaning};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported, entry, plans::FloorPlan, symbols::Meaning,
+};
 use crate::compile::files::Files;
 use crate::compile::lower::{builtin::DISTRIBUTIONS, shapes};
+use crate::compile::nearest::nearest;
 use crate::compile::scene::imports::{fields::Import, walls};
 use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, SceneItem};
 use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
+
+/// The word behind `as` that is no name of a floor plan.
+const WALKABLE: &str = "walkable";
 
 /// Declares the names of a scene. Regions and barriers get their numbers in order of writing; barriers of
 /// imports come last.
@@ -22,10 +29,8 @@ pub(crate) fn declare_scene<'a>(context: &mut Context<'a>, items: &'a [SceneItem
             SceneItem::Region { name, shape } => {
                 context.shapes.push(None);
                 let id = RegionId(context.shapes.len() as u32 - 1);
-                context.scene.regions.push(Region {
-                    name: name.name.clone(),
-                    shape: Shape::rectangle(Vec2::zeros(), Vec2::zeros()),
-                });
+                let nothing = Shape::rectangle(Vec2::zeros(), Vec2::zeros());
+                context.scene.regions.push(Region::new(&name.name, nothing));
                 entry::enter(context, name, Meaning::Region(id, shape));
             }
             SceneItem::Wall { name, .. } | SceneItem::Obstacle { name, .. } => {
@@ -43,19 +48,39 @@ pub(crate) fn declare_scene<'a>(context: &mut Context<'a>, items: &'a [SceneItem
                 context.scene.lines.push(Line { name: name.name.clone(), segment: nowhere });
                 entry::enter(context, name, Meaning::Line(id));
             }
-            SceneItem::Import { .. } | SceneItem::Periodic { .. } => {}
+            SceneItem::Door { name, .. } => {
+                let id = LineId(context.scene.lines.len() as u32);
+                let nowhere = Segment::new(Vec2::zeros(), Vec2::zeros());
+                context.scene.lines.push(Line { name: name.name.clone(), segment: nowhere });
+                entry::enter(context, name, Meaning::Line(id));
+            }
+            SceneItem::Import { called: Some(name), .. } => {
+                if nearest(&name.name, std::iter::once(WALKABLE)).is_some() {
+                    let error = error!(E0101, name.span, "expected `{WALKABLE}`, found `{}`", name.name;
+                        hint: "did you mean `{WALKABLE}`?");
+                    context.note(error);
+                }
+                context.plans.push(FloorPlan { name: name.name.clone(), parts: None });
+                entry::enter(context, name, Meaning::Plan(context.plans.len() - 1));
+            }
+            SceneItem::Import { called: None, .. } | SceneItem::Periodic { .. } => {}
         }
     }
 }
 
-/// Settles the shapes of a scene; `next` and `line` are the numbers of its first barrier and its first line.
+/// Settles the shapes of a scene; `next` and `line` are the numbers of its first barrier and its first line. The doors are set
+/// when all walls are known.
 pub(crate) fn settle_scene<'a>(
     context: &mut Context<'a>,
     items: &'a [SceneItem],
     files: &Files,
     (next, line): (&mut usize, &mut usize),
-) {
-    let mut imports = Vec::new();
+) -> Vec<doors::Door> {
+    let first = context.scene.barriers.len();
+    let imports: Vec<Import<'_>> = items.iter().filter_map(import_of).collect();
+    imports::import_all(context, &imports, files);
+    periodic::check_imported(context, items, first);
+    let mut doors = Vec::new();
     for item in items {
         match item {
             SceneItem::Region { name, shape } => {
@@ -76,8 +101,14 @@ pub(crate) fn settle_scene<'a>(
                 *next += 1;
             }
             SceneItem::Obstacle { shape, .. } => {
-                if let Ok(shape) = shapes::lower_shape(context, shape, &Locals::default()) {
-                    context.scene.barriers[*next].obstacle = Obstacle::Solid(shape);
+                match shapes::lower_shape(context, shape, &Locals::default()) {
+                    Ok(Shape::Parts(_)) => {
+                        let error = error!(E0401, shape.span(), "an obstacle has one part";
+                            hint: "write an obstacle for each part of the region");
+                        context.note(error);
+                    }
+                    Ok(shape) => context.scene.barriers[*next].obstacle = Obstacle::Solid(shape),
+                    Err(Reported) => {}
                 }
                 *next += 1;
             }
@@ -91,15 +122,21 @@ pub(crate) fn settle_scene<'a>(
                 }
                 *line += 1;
             }
-            SceneItem::Import { path, walkable, filter, fields, .. } => {
-                imports.push(Import { path, walkable: *walkable, filter: filter.as_ref(), fields });
+            SceneItem::Door { name, ends, fields, span } => {
+                let closed = doors::is_closed(context, fields);
+                if let Ok(segment) = lower_line(context, ends, *span) {
+                    context.scene.lines[*line].segment = segment;
+                    doors.push(doors::Door {
+                        name: name.clone(),
+                        segment,
+                        closed: matches!(closed, Ok(true)),
+                    });
+                }
+                *line += 1;
             }
-            SceneItem::Periodic { .. } => {}
+            SceneItem::Import { .. } | SceneItem::Periodic { .. } => {}
         }
     }
-    let first = context.scene.barriers.len();
-    imports::import_all(context, &imports, files);
-    periodic::check_imported(context, items, first);
     let walls =
         walls(&mut context.scene.barriers).into_iter().map(|pieces| pieces.clone()).collect::<Vec<_>>();
     let wall = items.iter().find_map(|item| match item {
@@ -109,6 +146,13 @@ pub(crate) fn settle_scene<'a>(
     if let Some(span) = wall.filter(|_| geometry::is_crowded(&walls, &[], TOUCHING)) {
         imports::crowded(context, span);
     }
+    doors
+}
+
+/// An import as written.
+fn import_of(item: &SceneItem) -> Option<Import<'_>> {
+    let SceneItem::Import { path, walkable, filter, called, fields, .. } = item else { return None };
+    Some(Import { path, walkable: *walkable, filter: filter.as_ref(), called: called.as_ref(), fields })
 }
 
 fn wall(context: &mut Context<'_>, points: &[Expr], span: Span) -> Lowered<Vec<Segment>> {

@@ -19,6 +19,8 @@ const SHORTEST: f64 = 1e-3;
 pub struct Door {
     /// Where it is in its file.
     pub place: FilePlace,
+    /// Its name there; may be empty.
+    pub name: String,
     /// Its middle, m.
     pub at: Vec2,
     /// Its direction, of length 1, if it is drawn as a line.
@@ -32,8 +34,8 @@ pub struct Door {
 /// What a door has opened.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opened {
-    /// Its width.
-    Whole,
+    /// Its width: the opening.
+    Whole(Segment),
     /// Less than its width: as much as its wall has, m.
     Part(f64),
     /// Nothing: no wall is near enough.
@@ -130,13 +132,34 @@ pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened
         } else {
             (-half, half)
         };
-        found.push(if is_short { Opened::Part(high - low) } else { Opened::Whole });
+        let end = |t: f64| opening.at + opening.along * t;
+        let whole = Segment::new(end(opening.low), end(opening.high));
+        found.push(if is_short { Opened::Part(high - low) } else { Opened::Whole(whole) });
         openings.push(opening);
     }
     for wall in walls {
-        **wall = wall.drain(..).flat_map(|piece| cut(piece, &openings)).collect();
+        **wall = wall.drain(..).flat_map(|piece| cut(piece, &openings, REACH)).collect();
     }
     found
+}
+
+/// Opens the pieces of walls that lie on a door just there, or finds them all open; how much of its width it has opened, m.
+pub fn open_at(walls: &mut [&mut Vec<Segment>], door: &Segment) -> f64 {
+    let width = door.length();
+    let opening = Opening { at: door.a, along: (door.b - door.a) / width, low: 0.0, high: width };
+    let mut opened = 0.0;
+    for piece in walls.iter().flat_map(|wall| wall.iter()) {
+        if let Some((a, b)) = opening.stretch(piece, ONE_LINE) {
+            let (low, high) = if a < b { (a, b) } else { (b, a) };
+            let shared = high.min(width) - low.max(0.0);
+            opened += if shared > 0.0 { shared } else { 0.0 };
+        }
+    }
+    for wall in walls {
+        **wall =
+            wall.drain(..).flat_map(|piece| cut(piece, std::slice::from_ref(&opening), ONE_LINE)).collect();
+    }
+    opened
 }
 
 /// The line of the wall that is nearest to a door, through its point nearest to the door, as far as it goes on without a
@@ -165,18 +188,18 @@ fn line<'p, P: Iterator<Item = &'p Segment> + Clone>(door: &Door, pieces: &P) ->
     openings.max_by_key(|(ends_here, _)| *ends_here).map(|(_, opening)| opening)
 }
 
-/// What openings leave of a piece.
-fn cut(piece: Segment, openings: &[Opening]) -> Vec<Segment> {
+/// What openings leave of a piece as near as a reach, m.
+fn cut(piece: Segment, openings: &[Opening], reach: f64) -> Vec<Segment> {
     let mut left = vec![piece];
     for opening in openings {
-        let reach = Vec2::repeat(opening.high.abs().max(opening.low.abs()) + REACH);
+        let around = Vec2::repeat(opening.high.abs().max(opening.low.abs()) + reach);
         let (low, high) = (piece.a.inf(&piece.b) - opening.at, piece.a.sup(&piece.b) - opening.at);
-        if low.x > reach.x || low.y > reach.y || high.x < -reach.x || high.y < -reach.y {
+        if low.x > around.x || low.y > around.y || high.x < -around.x || high.y < -around.y {
             continue;
         }
         left = left
             .into_iter()
-            .flat_map(|part| match opening.stretch(&part, REACH) {
+            .flat_map(|part| match opening.stretch(&part, reach) {
                 Some((a, b)) if a != b => {
                     let at = |t: f64| part.a + (part.b - part.a) * ((t - a) / (b - a)).clamp(0.0, 1.0);
                     let (first, last) =

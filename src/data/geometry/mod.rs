@@ -16,7 +16,7 @@ pub mod plan;
 pub mod snap;
 pub mod wkt;
 
-pub use door::{Door, Opened, open_doors};
+pub use door::{Door, Opened, open_at, open_doors};
 pub use drawing::{Drawing, Format, read};
 pub use dxf::read_dxf;
 pub use feature::{Feature, FilePlace, Geometry, GeometryError, PropertyValue, Select};

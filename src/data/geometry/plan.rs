@@ -83,10 +83,11 @@ pub fn plan(
 }
 
 fn door(feature: &Feature, unit: f64) -> Result<Door, String> {
-    let (place, has_level) = (feature.place.clone(), feature.property("level").is_some());
+    let (place, name) = (feature.place.clone(), feature.name.clone());
+    let has_level = feature.property("level").is_some();
     match &feature.shape {
         Geometry::Point(at) => {
-            Ok(Door { place, at: *at, along: None, width: width(feature, unit)?, has_level })
+            Ok(Door { place, name, at: *at, along: None, width: width(feature, unit)?, has_level })
         }
         Geometry::Line(points) => {
             let (first, last) = (points[0], points[points.len() - 1]);
@@ -94,7 +95,8 @@ fn door(feature: &Feature, unit: f64) -> Result<Door, String> {
             if width == 0.0 {
                 return Err("the line of a door must not end where it begins".into());
             }
-            Ok(Door { place, at: 0.5 * (first + last), along: Some(along / width), width, has_level })
+            let at = 0.5 * (first + last);
+            Ok(Door { place, name, at, along: Some(along / width), width, has_level })
         }
         Geometry::Polygon(_) | Geometry::Circle { .. } => Err("a door must be a point or a line".into()),
     }

@@ -119,6 +119,7 @@ fn rings(solid: &Shape) -> Vec<Ring> {
             let holes = polygon.holes.iter().map(|hole| turned(hole, true));
             std::iter::once(turned(&polygon.outline, false)).chain(holes).collect()
         }
+        Shape::Parts(parts) => parts.iter().flat_map(rings).collect(),
     }
 }
 

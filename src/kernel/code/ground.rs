@@ -73,10 +73,99 @@ enum Form {
     Wall(Vec<Edge>),
 }
 
+impl Form {
+    /// The lanes whose point is inside or on the rim.
+    #[inline(always)]
+    fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
+        match self {
+            Self::Rectangle(Bounds { low, high }) => {
+                x.simd_ge(Vector::splat(x.simd, low.x))
+                    & x.simd_le(Vector::splat(x.simd, high.x))
+                    & y.simd_ge(Vector::splat(x.simd, low.y))
+                    & y.simd_le(Vector::splat(x.simd, high.y))
+            }
+            Self::Disc { centre, radius } => {
+                let (dx, dy) = (x - centre.x, y - centre.y);
+                (dx * dx + dy * dy).simd_le(Vector::splat(x.simd, radius * radius))
+            }
+            Self::Polygon { edges, rings } => {
+                nearest_squared(edges, x, y).simd_eq(Vector::splat(x.simd, 0.0)) | within(edges, rings, x, y)
+            }
+            Self::Wall(_) => Truth::<S>::splat(x.simd, false),
+        }
+    }
+
+    /// The way from a point to the nearest point of the rim of a form with edges, and of another one from outside.
+    #[inline(always)]
+    fn way_to_rim<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
+        let zero = Vector::splat(x.simd, 0.0);
+        let mut best = (Vector::splat(x.simd, f64::INFINITY), zero, zero);
+        let edges = match self {
+            Self::Polygon { edges, .. } | Self::Wall(edges) => edges,
+            Self::Rectangle(Bounds { low, high }) => {
+                let way = |v: Vector<S>, low: f64, high: f64| {
+                    let (up, down) = (-v + low, -v + high);
+                    let down = down.simd_lt(zero).select(down, zero);
+                    up.simd_gt(zero).select(up, down)
+                };
+                return (way(x, low.x, high.x), way(y, low.y, high.y));
+            }
+            Self::Disc { centre, radius } => {
+                let (dx, dy) = (-x + centre.x, -y + centre.y);
+                let far = (dx * dx + dy * dy).sqrt();
+                let share = (far - *radius) / far;
+                return (dx * share, dy * share);
+            }
+        };
+        for edge in edges {
+            let (dx, dy) = edge.offset(x, y);
+            let squared = dx * dx + dy * dy;
+            let nearer = squared.simd_lt(best.0);
+            best = (nearer.select(squared, best.0), nearer.select(-dx, best.1), nearer.select(-dy, best.2));
+        }
+        (best.1, best.2)
+    }
+
+    /// Distance from the region: 0 inside.
+    #[inline(always)]
+    fn distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        let outside = match self {
+            Self::Rectangle(bounds) => return box_squared(bounds, x, y).sqrt(),
+            Self::Disc { .. } => self.signed_distance(x, y),
+            Self::Polygon { edges, .. } | Self::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
+        };
+        self.contains(x, y).select(Vector::splat(x.simd, 0.0), outside)
+    }
+
+    /// Distance from the surface of a barrier or the rim of a region: negative inside.
+    #[inline(always)]
+    fn signed_distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        match self {
+            Self::Disc { centre, radius } => {
+                let (dx, dy) = (x - centre.x, y - centre.y);
+                (dx * dx + dy * dy + nothing(x, y)).sqrt() - *radius
+            }
+            Self::Polygon { edges, .. } => {
+                let distance = nearest_squared(edges, x, y).sqrt();
+                self.contains(x, y).select(-distance, distance)
+            }
+            Self::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
+            Self::Rectangle(bounds) => {
+                let across = lesser(x - bounds.low.x, -x + bounds.high.x);
+                let depth = lesser(across, lesser(y - bounds.low.y, -y + bounds.high.y));
+                let inside = depth.simd_ge(Vector::splat(x.simd, 0.0));
+                inside.select(-depth, box_squared(bounds, x, y).sqrt())
+            }
+        }
+    }
+}
+
 /// A region or barrier.
 #[derive(Clone, Debug)]
 pub struct Ground {
     form: Form,
+    /// The other parts of a region of several.
+    others: Vec<Form>,
     bounds: Option<Bounds>,
 }
 
@@ -91,9 +180,9 @@ pub fn upright(polygon: &Polygon) -> Option<Bounds> {
 }
 
 impl Ground {
-    /// The middle of its bounds; none of a wall without pieces.
+    /// The middle of its bounds; none of a wall without pieces, and of a region of several parts.
     pub fn middle(&self) -> Option<Vec2> {
-        self.bounds.map(|bounds| 0.5 * (bounds.low + bounds.high))
+        self.bounds.filter(|_| self.others.is_empty()).map(|bounds| 0.5 * (bounds.low + bounds.high))
     }
 
     fn polygon(polygon: &Polygon) -> Form {
@@ -106,14 +195,18 @@ impl Ground {
 
     /// A region.
     pub fn region(shape: &Shape) -> Self {
-        let form = match shape {
+        let form = |part: &Shape| match part {
             Shape::Circle { centre, radius } => Form::Disc { centre: *centre, radius: *radius },
             Shape::Polygon(polygon) => match upright(polygon) {
                 Some(bounds) => Form::Rectangle(bounds),
                 None => Self::polygon(polygon),
             },
+            // Parts have no parts.
+            Shape::Parts(_) => Form::Wall(Vec::new()),
         };
-        Self { form, bounds: Some(shape.bounds()) }
+        let mut forms = shape.parts().iter().map(form);
+        let first = forms.next().unwrap_or(Form::Wall(Vec::new()));
+        Self { form: first, others: forms.collect(), bounds: Some(shape.bounds()) }
     }
 
     /// A barrier.
@@ -121,12 +214,15 @@ impl Ground {
         match obstacle {
             Obstacle::Wall(segments) => Self {
                 form: Form::Wall(segments.iter().copied().map(Edge::new).collect()),
+                others: Vec::new(),
                 bounds: Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
             },
-            Obstacle::Solid(Shape::Polygon(polygon)) => {
-                Self { form: Self::polygon(polygon), bounds: Bounds::around(polygon.outline.iter().copied()) }
-            }
-            Obstacle::Solid(shape @ Shape::Circle { .. }) => Self::region(shape),
+            Obstacle::Solid(Shape::Polygon(polygon)) => Self {
+                form: Self::polygon(polygon),
+                others: Vec::new(),
+                bounds: Bounds::around(polygon.outline.iter().copied()),
+            },
+            Obstacle::Solid(shape @ (Shape::Circle { .. } | Shape::Parts(_))) => Self::region(shape),
         }
     }
 
@@ -138,72 +234,30 @@ impl Ground {
     /// The lanes whose point is inside or on the rim.
     #[inline(always)]
     pub fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
-        match &self.form {
-            Form::Rectangle(Bounds { low, high }) => {
-                x.simd_ge(Vector::splat(x.simd, low.x))
-                    & x.simd_le(Vector::splat(x.simd, high.x))
-                    & y.simd_ge(Vector::splat(x.simd, low.y))
-                    & y.simd_le(Vector::splat(x.simd, high.y))
-            }
-            Form::Disc { centre, radius } => {
-                let (dx, dy) = (x - centre.x, y - centre.y);
-                (dx * dx + dy * dy).simd_le(Vector::splat(x.simd, radius * radius))
-            }
-            Form::Polygon { edges, rings } => {
-                nearest_squared(edges, x, y).simd_eq(Vector::splat(x.simd, 0.0)) | within(edges, rings, x, y)
-            }
-            Form::Wall(_) => Truth::<S>::splat(x.simd, false),
-        }
+        self.others.iter().fold(self.form.contains(x, y), |inside, form| inside | form.contains(x, y))
     }
 
-    /// The way from a point to the nearest point of the rim of a region with edges; zero for others.
+    /// The way from a point outside to the nearest point of a region; inside of edges that to the rim.
     #[inline(always)]
     pub fn way_to_rim<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
-        let zero = Vector::splat(x.simd, 0.0);
-        let mut best = (Vector::splat(x.simd, f64::INFINITY), zero, zero);
-        if let Form::Polygon { edges, .. } | Form::Wall(edges) = &self.form {
-            for edge in edges {
-                let (dx, dy) = edge.offset(x, y);
-                let squared = dx * dx + dy * dy;
-                let nearer = squared.simd_lt(best.0);
-                best =
-                    (nearer.select(squared, best.0), nearer.select(-dx, best.1), nearer.select(-dy, best.2));
-            }
-        }
-        (best.1, best.2)
+        self.others.iter().fold(self.form.way_to_rim(x, y), |(ax, ay), form| {
+            let (bx, by) = form.way_to_rim(x, y);
+            let nearer = (bx * bx + by * by).simd_lt(ax * ax + ay * ay);
+            (nearer.select(bx, ax), nearer.select(by, ay))
+        })
     }
 
     /// Distance from the region: 0 inside.
     #[inline(always)]
     pub(super) fn distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
-        let outside = match &self.form {
-            Form::Rectangle(bounds) => return box_squared(bounds, x, y).sqrt(),
-            Form::Disc { .. } => self.signed_distance(x, y),
-            Form::Polygon { edges, .. } | Form::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
-        };
-        self.contains(x, y).select(Vector::splat(x.simd, 0.0), outside)
+        self.others.iter().fold(self.form.distance(x, y), |least, form| lesser(least, form.distance(x, y)))
     }
 
     /// Distance from the surface of a barrier or the rim of a region: negative inside.
     #[inline(always)]
     pub(super) fn signed_distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
-        match &self.form {
-            Form::Disc { centre, radius } => {
-                let (dx, dy) = (x - centre.x, y - centre.y);
-                (dx * dx + dy * dy + nothing(x, y)).sqrt() - *radius
-            }
-            Form::Polygon { edges, .. } => {
-                let distance = nearest_squared(edges, x, y).sqrt();
-                self.contains(x, y).select(-distance, distance)
-            }
-            Form::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
-            Form::Rectangle(bounds) => {
-                let across = lesser(x - bounds.low.x, -x + bounds.high.x);
-                let depth = lesser(across, lesser(y - bounds.low.y, -y + bounds.high.y));
-                let inside = depth.simd_ge(Vector::splat(x.simd, 0.0));
-                inside.select(-depth, box_squared(bounds, x, y).sqrt())
-            }
-        }
+        let first = self.form.signed_distance(x, y);
+        self.others.iter().fold(first, |least, form| lesser(least, form.signed_distance(x, y)))
     }
 
     /// The smaller of `best` and the distance from the barrier. Far barriers are passed over by their

@@ -13,7 +13,8 @@ struct Extent {
     solid: Option<Shape>,
 }
 
-fn extent(scene: &Scene, place: &Place) -> Option<Extent> {
+/// The parts of a region or a barrier.
+fn extents(scene: &Scene, place: &Place) -> Option<Vec<Extent>> {
     let of_shape = |shape: &Shape| match shape {
         Shape::Circle { centre, radius } => Extent {
             edges: vec![Segment::new(*centre, *centre)],
@@ -23,12 +24,16 @@ fn extent(scene: &Scene, place: &Place) -> Option<Extent> {
         Shape::Polygon(polygon) => {
             Extent { edges: polygon.segments().collect(), radius: 0.0, solid: Some(shape.clone()) }
         }
+        Shape::Parts(_) => Extent { edges: Vec::new(), radius: 0.0, solid: None },
     };
+    let of_parts = |shape: &Shape| shape.parts().iter().map(of_shape).collect();
     match place {
-        Place::Region(id) => scene.regions.get(id.0 as usize).map(|region| of_shape(&region.shape)),
+        Place::Region(id) => scene.regions.get(id.0 as usize).map(|region| of_parts(&region.shape)),
         Place::Barrier(id) => scene.barriers.get(id.0 as usize).map(|barrier| match &barrier.obstacle {
-            Obstacle::Wall(segments) => Extent { edges: segments.clone(), radius: 0.0, solid: None },
-            Obstacle::Solid(shape) => of_shape(shape),
+            Obstacle::Wall(segments) => {
+                vec![Extent { edges: segments.clone(), radius: 0.0, solid: None }]
+            }
+            Obstacle::Solid(shape) => of_parts(shape),
         }),
         Place::Agent(_) | Place::Point(..) | Place::Centroid(_) => None,
     }
@@ -44,7 +49,12 @@ fn apart(a: &Segment, b: &Segment) -> f64 {
 
 /// Distance between two regions or barriers of a scene: 0 where they meet, NaN where one is neither.
 pub(super) fn between(scene: &Scene, a: &Place, b: &Place) -> f64 {
-    let (Some(a), Some(b)) = (extent(scene, a), extent(scene, b)) else { return f64::NAN };
+    let (Some(a), Some(b)) = (extents(scene, a), extents(scene, b)) else { return f64::NAN };
+    let pairs = a.iter().flat_map(|one| b.iter().map(move |other| between_parts(one, other)));
+    pairs.fold(f64::INFINITY, f64::min)
+}
+
+fn between_parts(a: &Extent, b: &Extent) -> f64 {
     let within = |shape: &Option<Shape>, edges: &[Segment]| {
         shape.as_ref().is_some_and(|shape| edges.iter().any(|s| shape.contains(s.a)))
     };
@@ -69,7 +79,7 @@ mod tests {
     #[test]
     fn things_apart_touching_and_inside_one_another() {
         let p = |x: f64, y: f64| Vec2::new(x, y);
-        let region = |shape| Region { name: String::new(), shape };
+        let region = |shape| Region::new("", shape);
         let barrier = |obstacle| Barrier { name: String::new(), obstacle };
         let scene = Scene {
             regions: vec![

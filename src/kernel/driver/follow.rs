@@ -233,6 +233,7 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
     let time = course.time.0[lane];
     let held = state.plans.held(slot);
     match held.plan.clone() {
+        Plan::Way(_) if is_due && chooses_again(drive, state, slot) => state.plans.ask(slot, Occasion::Looks),
         Plan::Way(points) => pass(drive, state, slot, &points, is_due),
         Plan::Follow(trajectory, _) => {
             let course = &mut state.plans.courses[block];
@@ -262,6 +263,17 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
         }
         Plan::Keep | Plan::NoWay | Plan::There => {}
     }
+}
+
+/// Whether someone on the way to one of several exits looks for the quickest again, every 2 s.
+fn chooses_again(drive: &Drive, state: &mut State, slot: Slot) -> bool {
+    let stage = state.route.way(slot.block, slot.lane).stage;
+    if !drive.stages[stage as usize].chooses {
+        return false;
+    }
+    let held = state.plans.held_mut(slot);
+    held.stuck = (held.stuck + 1) % LOOKS;
+    held.stuck == 0
 }
 
 /// Whether driven agents are looked at in a tick.

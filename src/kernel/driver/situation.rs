@@ -74,6 +74,17 @@ impl<'a> Situation<'a> {
         self.slot.of(&self.state.bodies[parameter])
     }
 
+    /// Where the others are who go to their goals by ways of points, and where these ways end, m.
+    pub fn ends(&self) -> impl Iterator<Item = (Vec2, Vec2)> + '_ {
+        let trial = self.state.layout.trial_of(self.slot.lane);
+        self.others().filter_map(move |other| {
+            match self.state.plans.plan(self.state.slot(other.agent.0 as usize, trial)) {
+                Some(Plan::Way(points)) => Some((other.position, *points.last()?)),
+                _ => None,
+            }
+        })
+    }
+
     /// All other agents that are in the scene of this trial, by number.
     pub fn others(&self) -> impl Iterator<Item = Other> + '_ {
         let (state, own) = (self.state, self.agent);

@@ -88,4 +88,6 @@ pub enum Occasion {
     Left,
     /// The plan ends within the next step; the new plan begins when it does.
     Ended,
+    /// Its way leads to one of several exits, and it looks whether another one is quicker now.
+    Looks,
 }

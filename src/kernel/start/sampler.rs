@@ -23,8 +23,13 @@ pub(super) struct Trapezoid {
 /// Points in a shape.
 #[derive(Clone, Debug)]
 pub(super) enum Sampler {
-    Disc { centre: Vec2, radius: f64 },
+    Disc {
+        centre: Vec2,
+        radius: f64,
+    },
     Trapezoids(Vec<Trapezoid>),
+    /// Each part, and the area up to and with it, m^2.
+    Parts(Vec<(Self, f64)>),
 }
 
 fn trapezoids(polygon: &Polygon) -> Vec<Trapezoid> {
@@ -67,6 +72,14 @@ impl Sampler {
         match shape {
             Shape::Circle { centre, radius } => Self::Disc { centre: *centre, radius: *radius },
             Shape::Polygon(polygon) => Self::Trapezoids(trapezoids(polygon)),
+            Shape::Parts(parts) => {
+                let mut sum = 0.0;
+                let part = |part: &Shape| {
+                    sum += part.area();
+                    (Self::new(part), sum)
+                };
+                Self::Parts(parts.iter().map(part).collect())
+            }
         }
     }
 
@@ -78,6 +91,13 @@ impl Sampler {
                 return Some(centre + Vec2::new(cos, sin) * (radius * u.sqrt()));
             }
             Self::Trapezoids(list) => list,
+            Self::Parts(parts) => {
+                let wanted = u * parts.last()?.1;
+                let index = parts.partition_point(|part| part.1 <= wanted).min(parts.len() - 1);
+                let before = if index == 0 { 0.0 } else { parts[index - 1].1 };
+                let share = math::at_most((wanted - before) / (parts[index].1 - before), 1.0);
+                return parts[index].0.point([share, v]);
+            }
         };
         let wanted = u * list.last()?.sum;
         let index = list.partition_point(|t| t.sum <= wanted).min(list.len() - 1);
@@ -125,6 +145,10 @@ mod tests {
         ring.holes.push(Polygon::rectangle(p(1., 1.), p(3., 3.)).outline);
         let (_, share) = mean_and_share(&Shape::Polygon(ring), &Shape::rectangle(p(0., 0.), p(1., 4.)));
         assert!((share - 1.0 / 3.0).abs() < 0.012, "{share}");
+
+        let rooms = vec![Shape::rectangle(p(0., 0.), p(1., 1.)), Shape::rectangle(p(5., 0.), p(8., 1.))];
+        let (_, share) = mean_and_share(&Shape::Parts(rooms.clone()), &rooms[1]);
+        assert!((share - 0.75).abs() < 0.012, "{share}");
 
         let disc = Shape::Circle { centre: p(1., 1.), radius: 2.0 };
         let (_, share) = mean_and_share(&disc, &Shape::Circle { centre: p(1., 1.), radius: 1.0 });

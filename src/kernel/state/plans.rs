@@ -31,7 +31,8 @@ pub(in crate::kernel) struct Held {
     pub(in crate::kernel) asked: u32,
     /// The class of paths that the agent is advised to take.
     pub(in crate::kernel) path: Option<u32>,
-    /// How often in a row it was seen standing while its plan moved.
+    /// How often in a row it was seen standing while its plan moved; on a way to one of several exits, how many looks ago it was
+    /// chosen.
     pub(in crate::kernel) stuck: u32,
 }
 

@@ -180,6 +180,11 @@ impl Plate {
                 let points = self.points(points);
                 let _ = writeln!(self.body, "<polyline points=\"{points}\" {} fill-opacity=\"0\"/>", ink.0);
             }
+            Mark::Shape(Shape::Parts(parts), ink) => {
+                for part in parts {
+                    self.mark(&Mark::Shape(part.clone(), *ink));
+                }
+            }
             Mark::Shape(shape, ink) => {
                 let drawn = match shape {
                     Shape::Circle { centre, radius } => {
@@ -192,6 +197,7 @@ impl Plate {
                             rings.map(|ring| format!("M{}Z", self.points(ring))).collect();
                         format!("<path fill-rule=\"evenodd\" d=\"{}\"", path.join(" "))
                     }
+                    Shape::Parts(_) => String::new(),
                 };
                 let opacity = if *ink == Ink::START { 0.7 } else { 1.0 };
                 let _ = writeln!(self.body, "{drawn} {} fill-opacity=\"{opacity}\"/>", ink.0);

@@ -1,6 +1,6 @@
 //! What a plan is for: the goals of the route up to the next pause, each with the point that a walker has drawn in it.
 
-use crate::base::geometry::{Shape, Vec2};
+use crate::base::geometry::Vec2;
 use crate::base::random::Stream;
 use crate::model::{Goal, Leg, Scene};
 use crate::route::roadmap::FreeSpace;
@@ -47,13 +47,7 @@ pub fn point_in(
     };
     let bounds = shape.bounds();
     let size = bounds.high - bounds.low;
-    let is_inside = |p: Vec2| {
-        shape.contains(p)
-            && match shape {
-                Shape::Circle { centre, radius: of } => (p - centre).norm() <= of - radius,
-                Shape::Polygon(polygon) => (p - polygon.nearest_on_outline(p)).norm() >= radius,
-            }
-    };
+    let is_inside = |p: Vec2| shape.depth(p) >= radius;
     let mut other = None;
     for n in 0..TRIES {
         let [x, y] = draw(n);

@@ -108,7 +108,7 @@ pub enum SceneItem {
         /// Its shape.
         shape: ShapeExpr,
     },
-    /// `region exit: rect (18.5, 0) .. (20, 4)`
+    /// `region exit: rect (18.5, 0) .. (20, 4)`, `region out: west, east`
     Region {
         /// Its name.
         name: Ident,
@@ -131,6 +131,17 @@ pub enum SceneItem {
         /// Where.
         span: Span,
     },
+    /// `door main: (3, 0) -- (3, 2) { closed = shut == 1 }`
+    Door {
+        /// Its name.
+        name: Ident,
+        /// Its ends.
+        ends: [Expr; 2],
+        /// When it is closed.
+        fields: Vec<Field>,
+        /// Where.
+        span: Span,
+    },
     /// `periodic x in 0 m .. 20 m`
     Periodic {
         /// `x` or `y`, or a name that compilation will refuse.
@@ -148,6 +159,8 @@ pub enum SceneItem {
         walkable: bool,
         /// Which features: comparisons of their properties with texts and numbers, joined by `&`, `|`, `!`.
         filter: Option<Expr>,
+        /// Its name, by which its rooms and doors are named: `as plan`.
+        called: Option<Ident>,
         /// How it is read: `{ snap = 5 cm }`.
         fields: Vec<Field>,
         /// Where.
@@ -160,6 +173,8 @@ pub enum SceneItem {
 pub enum ShapeExpr {
     /// The name of a region.
     Named(Ident),
+    /// `plan.foyer`, `plan["Room 12"]`: a room of a floor plan.
+    Of(Expr),
     /// `circle (10, 2) radius 0.3 m`
     Circle {
         /// Centre.
@@ -187,6 +202,8 @@ pub enum ShapeExpr {
         /// Where.
         span: Span,
     },
+    /// `west, circle (10, 2) radius 0.3 m`: the parts of a region.
+    Parts(Vec<Self>),
 }
 
 /// `name = value`
@@ -444,7 +461,12 @@ impl ShapeExpr {
     pub fn span(&self) -> Span {
         match self {
             Self::Named(name) => name.span,
+            Self::Of(room) => room.span,
             Self::Circle { span, .. } | Self::Rectangle { span, .. } | Self::Polygon { span, .. } => *span,
+            Self::Parts(parts) => {
+                let spans = parts.iter().map(Self::span);
+                spans.reduce(|all, span| all.to(span)).unwrap_or_default()
+            }
         }
     }
 }

@@ -21,7 +21,16 @@ impl Builder<'_> {
             let path = self.quoted(&parts.part(Rule::text)?);
             let walkable = parts.part(Rule::walkable).is_some();
             let filter = parts.part(Rule::expr).map(|filter| self.expr(filter));
-            return Some(SceneItem::Import { path, walkable, filter, fields: self.body(parts), span });
+            let called = parts.part(Rule::called).and_then(|called| Parts::of(called).part(Rule::name));
+            let called = called.map(|name| self.ident(&name));
+            return Some(SceneItem::Import {
+                path,
+                walkable,
+                filter,
+                called,
+                fields: self.body(parts),
+                span,
+            });
         }
         if rule == Rule::periodic {
             let axis = self.ident(&parts.part(Rule::name)?);
@@ -42,11 +51,18 @@ impl Builder<'_> {
                 Some(SceneItem::Obstacle { name, shape: self.shape(parts.part(Rule::shape)?)? })
             }
             Rule::region => {
-                Some(SceneItem::Region { name: name?, shape: self.shape(parts.part(Rule::shape)?)? })
+                let mut shapes: Vec<_> = parts.map(|shape| self.shape(shape)).collect::<Option<_>>()?;
+                let shape = if shapes.len() == 1 { shapes.swap_remove(0) } else { ShapeExpr::Parts(shapes) };
+                Some(SceneItem::Region { name: name?, shape })
             }
             Rule::line => {
                 let a = self.expr(parts.part(Rule::place)?);
                 Some(SceneItem::Line { name: name?, ends: [a, self.expr(parts.part(Rule::place)?)], span })
+            }
+            Rule::door => {
+                let a = self.expr(parts.part(Rule::place)?);
+                let ends = [a, self.expr(parts.part(Rule::place)?)];
+                Some(SceneItem::Door { name: name?, ends, fields: self.body(parts), span })
             }
             _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?) }),
         }
@@ -57,6 +73,7 @@ impl Builder<'_> {
         let span = self.span(&pair);
         match pair.as_rule() {
             Rule::name => Some(ShapeExpr::Named(self.ident(&pair))),
+            Rule::of_plan => Some(ShapeExpr::Of(self.expr(pair))),
             Rule::circle => {
                 let mut parts = Parts::of(pair);
                 let centre = self.expr(parts.part(Rule::place)?);

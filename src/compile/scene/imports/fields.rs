@@ -4,7 +4,7 @@ use crate::base::geometry::Vec2;
 use crate::compile::context::{Context, Locals, Lowered, symbols::unknown, typed::Typed};
 use crate::compile::dimension::Dimension;
 use crate::data::geometry::Format;
-use crate::syntax::ast::{Expr, ExprKind, Field, Text, Value};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Text, Value};
 use crate::syntax::codes::Code;
 
 /// Within at most so many metres walls are joined.
@@ -17,6 +17,8 @@ pub(crate) struct Import<'a> {
     pub(crate) path: &'a Text,
     pub(crate) walkable: bool,
     pub(crate) filter: Option<&'a Expr>,
+    /// Its name, by which its rooms and doors are named.
+    pub(crate) called: Option<&'a Ident>,
     pub(crate) fields: &'a [Field],
 }
 

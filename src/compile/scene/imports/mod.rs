@@ -4,7 +4,10 @@ pub(crate) mod drawing;
 pub(crate) mod fields;
 pub(crate) mod filter;
 
-use crate::compile::context::{Context, Lowered};
+use crate::compile::context::{
+    Context, Lowered,
+    plans::{FloorPlan, PlanPart},
+};
 use crate::compile::files::Files;
 use crate::compile::scene::imports::{
     drawing::{shown, unreadable},
@@ -12,7 +15,9 @@ use crate::compile::scene::imports::{
 };
 
 use crate::base::geometry::{Segment, Shape, Vec2};
-use crate::data::geometry::{self, Door, Form, Format, Opened, Placement, placement::middle, plan::TOUCHING};
+use crate::data::geometry::{
+    self, Door, Feature, Form, Format, Geometry, Opened, Placement, placement::middle, plan::TOUCHING,
+};
 use crate::model::{Barrier, Obstacle};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -29,7 +34,12 @@ pub(crate) fn import_all(context: &mut Context<'_>, imports: &[Import<'_>], file
     let mut found: Vec<(&Import<'_>, Vec<Door>)> = Vec::new();
     for import in imports {
         let start = context.scene.barriers.len();
-        if let Ok(doors) = read_import(context, import, files, &mut middle) {
+        let read = read_import(context, import, files, &mut middle);
+        if let Some(plan) = plan_of(context, import) {
+            let rooms = read.as_ref().ok().map(|(_, rooms)| rooms.clone());
+            plan.parts = rooms;
+        }
+        if let Ok((doors, _)) = read {
             found.push((import, doors));
         }
         context.origins.imports.push((start..context.scene.barriers.len(), import.path.span));
@@ -40,11 +50,18 @@ pub(crate) fn import_all(context: &mut Context<'_>, imports: &[Import<'_>], file
     for (import, doors) in found {
         let names_level =
             import.filter.is_some_and(|filter| filter::names(filter).any(|(name, _)| name == "level"));
-        let faults: Vec<String> = doors
+        let opened: Vec<(Door, Opened)> = doors.into_iter().zip(opened.by_ref()).collect();
+        if let Some(parts) = plan_of(context, import).and_then(|plan| plan.parts.as_mut()) {
+            let named = opened.iter().filter(|(door, _)| !door.name.is_empty());
+            parts.extend(named.filter_map(|(door, opened)| match opened {
+                Opened::Whole(segment) => Some((door.name.clone(), PlanPart::Door(*segment))),
+                Opened::Part(_) | Opened::Nothing => None,
+            }));
+        }
+        let faults: Vec<String> = opened
             .iter()
-            .zip(opened.by_ref())
             .filter_map(|(door, opened)| match opened {
-                Opened::Whole => None,
+                Opened::Whole(_) => None,
                 // The door is on another level.
                 Opened::Nothing if names_level && !door.has_level => None,
                 Opened::Part(part) => Some(
@@ -68,13 +85,35 @@ pub(crate) fn import_all(context: &mut Context<'_>, imports: &[Import<'_>], file
     }
 }
 
-/// Imports one file; its doors. `middle` is the middle of the first file in degrees, which several share.
+/// The floor plan that an import gives its name to.
+fn plan_of<'c>(context: &'c mut Context<'_>, import: &Import<'_>) -> Option<&'c mut FloorPlan> {
+    let name = &import.called?.name;
+    context.plans.iter_mut().find(|plan| plan.name == *name)
+}
+
+/// The parts of a floor plan that have an area and a name.
+fn rooms(features: &[Feature]) -> Vec<(String, PlanPart)> {
+    let named = features.iter().flat_map(|feature| {
+        let shape = match &feature.shape {
+            Geometry::Polygon(polygon) => Some(Shape::Polygon(polygon.clone())),
+            Geometry::Circle { centre, radius } => Some(Shape::Circle { centre: *centre, radius: *radius }),
+            Geometry::Point(_) | Geometry::Line(_) => None,
+        };
+        // Maps number rooms by their `ref`.
+        let number = feature.text("ref").filter(|number| *number != feature.name);
+        let names = [Some(feature.name.as_str()), number].into_iter().flatten();
+        names.filter(|name| !name.is_empty()).filter_map(move |name| Some((name.to_owned(), shape.clone()?)))
+    });
+    named.map(|(name, shape)| (name, PlanPart::Room(shape))).collect()
+}
+
+/// Imports one file; its doors, and its rooms by name. `middle` is the middle of the first file in degrees, which several share.
 fn read_import(
     context: &mut Context<'_>,
     import: &Import<'_>,
     files: &Files,
     middle_of_first: &mut Option<Vec2>,
-) -> Lowered<Vec<Door>> {
+) -> Lowered<(Vec<Door>, Vec<(String, PlanPart)>)> {
     let span = import.path.span;
     let format = Format::of(&import.path.value);
     let fields = fields::import_fields(context, import)?;
@@ -129,7 +168,7 @@ fn read_import(
         _ => plan.has_spaces.then_some(TOUCHING),
     };
     join_walls(context, import, first, fields.snap, implied);
-    Ok(plan.doors)
+    Ok((plan.doors, rooms(&drawing.features)))
 }
 
 /// Joins the walls of an import that nearly touch, or reports them. `implied` is the distance of an import without

@@ -455,11 +455,11 @@ fn forms(barrier: &Barrier, surface: &Surface) -> Vec<(Form, Bounds)> {
     let sides: Vec<Side> = match &barrier.obstacle {
         Obstacle::Wall(_) => surface.edges().map(Side::of_wall).collect(),
         Obstacle::Solid(Shape::Polygon(polygon)) => sides_of(polygon),
-        Obstacle::Solid(Shape::Circle { .. }) => Vec::new(),
+        Obstacle::Solid(Shape::Circle { .. } | Shape::Parts(_)) => Vec::new(),
     };
     let sides = sides.into_iter().map(|side| (Form::Side(side), side.bounds()));
     match &barrier.obstacle {
-        Obstacle::Wall(_) => sides.collect(),
+        Obstacle::Wall(_) | Obstacle::Solid(Shape::Parts(_)) => sides.collect(),
         Obstacle::Solid(Shape::Circle { .. }) => vec![(Form::Disc, surface.bounds)],
         Obstacle::Solid(Shape::Polygon(_)) => sides.chain([(Form::Inside, surface.bounds)]).collect(),
     }

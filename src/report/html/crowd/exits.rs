@@ -38,7 +38,11 @@ pub(super) fn leavers(trace: &Trace) -> Vec<Leaver> {
 
 /// The region by which somebody left.
 fn exit<'s>(scene: &'s Scene, leaver: &Leaver) -> &'s str {
-    let regions = scene.regions.iter().map(|region| (region.shape.distance(leaver.to), region.name.as_str()));
+    let regions = scene
+        .regions
+        .iter()
+        .filter(|region| region.is_declared())
+        .map(|region| (region.shape.distance(leaver.to), region.name.as_str()));
     let beside = regions.filter(|(distance, _)| *distance <= BESIDE);
     beside.min_by(|a, b| a.0.total_cmp(&b.0)).map_or("elsewhere", |(_, name)| name)
 }

@@ -91,6 +91,7 @@ impl Plan {
                 let rings = std::iter::once(&polygon.outline).chain(&polygon.holes);
                 rings.map(|ring| self.path(ring) + "Z").collect()
             }
+            Shape::Parts(_) => String::new(),
         };
         let walls: String = scene.walls().map(line).collect();
         let solids: String = scene.solids().map(solid).collect();

@@ -134,10 +134,8 @@ fn a_number_of_crossings_never_falls() {
 fn people_who_left_are_counted_by_exit() {
     use crate::base::geometry::Shape;
     use crate::model::Region;
-    let region = |name: &str, x: f64| Region {
-        name: name.to_owned(),
-        shape: Shape::rectangle(Vec2::new(x, -9.0), Vec2::new(x + 1.0, 9.0)),
-    };
+    let region =
+        |name: &str, x: f64| Region::new(name, Shape::rectangle(Vec2::new(x, -9.0), Vec2::new(x + 1.0, 9.0)));
     let scene = Scene { regions: vec![region("west", -3.0), region("east", 3.0)], ..Scene::default() };
     // Six go east and are there after 3.0, 3.5, ... s; two stay.
     let walks: Vec<Walk> = (0..8)

@@ -124,6 +124,7 @@ fn outline(shape: &Shape) -> Outline {
             let rings = std::iter::once(&polygon.outline).chain(&polygon.holes);
             Outline::Rings(rings.map(|ring| ring.iter().flat_map(|at| place(*at)).collect()).collect())
         }
+        Shape::Parts(_) => Outline::Rings(Vec::new()),
     }
 }
 
@@ -141,7 +142,9 @@ impl Scene {
             walls: scenario.scene.walls().map(wall).collect(),
             solids: scenario.scene.solids().map(outline).collect(),
             regions: regions
-                .map(|one| Named { name: one.name.clone(), shape: outline(&one.shape) })
+                .filter(|one| one.is_declared())
+                .flat_map(|one| one.shape.parts().iter().map(|part| (one.name.clone(), outline(part))))
+                .map(|(name, shape)| Named { name, shape })
                 .collect(),
             points: points.map(|(name, at)| Point { name: name.clone(), at: place(*at) }).collect(),
             groups: groups
