@@ -12,7 +12,7 @@
 
 use smc::base::random::{Purpose, Stream, TrialKey};
 use smc::stats::calibration::{Boundary, Table};
-use smc::stats::ranking::{Allocation, Booleans, Each, Race};
+use smc::stats::ranking::{Allocation, Booleans, Contest as _, Each, Race};
 use smc::stats::{
     AnyEstimator, Estimator, Evidence, Hypothesis, Massart, Okamoto, Outcome, Plan, Sequential, Spending,
     Sprt, Test, TwoSprt,

@@ -2,7 +2,7 @@
 
 use super::tally::{Tally, uniform};
 use smc::stats::Outcome;
-use smc::stats::ranking::{Allocation, Booleans, Each, Race, Scores, Table};
+use smc::stats::ranking::{Allocation, Booleans, Contest as _, Each, Race, Scores, Table};
 
 fn workloads() -> [(Vec<f64>, f64); 6] {
     let spaced = (0..36).map(|k| 0.2 + 0.75 * f64::from(k) / 35.0).collect();

@@ -13,11 +13,9 @@
 //! ```
 
 use crate::base::math::{at_least, at_most};
-use crate::engine::sampling::procedure::score;
 use crate::engine::sampling::rank::WORD;
-use crate::stats::ranking::{Choice, Goal, Share};
+use crate::stats::ranking::{Choice, Contest, Goal, Share};
 use crate::stats::{Interval, Invalid, Running};
-use crate::trials::cell::Cell;
 
 /// Its name in reports.
 pub(in crate::engine) const NAME: &str = "least_score";
@@ -33,8 +31,6 @@ pub(in crate::engine) struct Least {
     columns: Vec<Running>,
     /// The estimate and the interval of each column, as they are after a round.
     known: Vec<(f64, Interval)>,
-    /// Trials of each column so far.
-    trials: Vec<u64>,
     deviations: Vec<f64>,
     /// What is wanted next, and how many of that are still missing.
     wanted: Vec<Share>,
@@ -65,7 +61,6 @@ impl Least {
             scale: high - low,
             known: vec![(column.estimate(), column.interval()); columns],
             columns: vec![column; columns],
-            trials: vec![0; columns],
             deviations: deviations.into_iter().step_by(models).collect(),
             wanted: Vec::new(),
             missing: 0,
@@ -116,7 +111,7 @@ impl Least {
     fn plan(&mut self) {
         let (scores, leader) = self.standing();
         self.wanted.clear();
-        if self.trials.contains(&0) {
+        if self.columns.iter().any(|column| column.trials() == 0) {
             let all = (0..self.columns.len()).map(|arm| Share { arm, from: 0, to: WORD });
             self.wanted.extend(all);
         } else if Self::gap(&scores, leader) > self.epsilon {
@@ -130,7 +125,7 @@ impl Least {
             for (option, ..) in asked.into_iter().filter(|(_, own, other)| 2.0 * own >= *other) {
                 for column in option * self.models..(option + 1) * self.models {
                     if self.known[column].1.low < scores[option].high {
-                        let from = self.trials[column];
+                        let from = self.columns[column].trials();
                         let to = from + WORD.max(from / GROWTH / WORD * WORD);
                         self.wanted.push(Share { arm: column, from, to });
                     }
@@ -139,33 +134,29 @@ impl Least {
         }
         self.missing = self.wanted.len();
     }
+}
 
-    /// The next round; empty once the choice is certified.
-    pub(in crate::engine) fn next_round(&self) -> &[Share] {
+impl Contest for Least {
+    fn next_round(&self) -> &[Share] {
         &self.wanted
     }
 
-    /// Whether the choice is certified.
-    pub(in crate::engine) fn finished(&self) -> bool {
-        self.wanted.is_empty()
-    }
-
-    /// Takes the cells of a round of a column.
-    pub(in crate::engine) fn feed(&mut self, column: usize, cells: &[Cell]) {
-        self.trials[column] += cells.len() as u64;
+    fn feed(&mut self, column: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
         let running = &mut self.columns[column];
-        for cell in cells {
-            running.observe(score(cell));
-        }
+        columns.iter().take(1).flatten().for_each(|value| running.observe(*value));
         self.known[column] = (running.estimate(), running.interval());
         self.missing = self.missing.saturating_sub(1);
         if self.missing == 0 {
             self.plan();
         }
+        Ok(())
     }
 
-    /// The choice among the options.
-    pub(in crate::engine) fn choice(&self) -> Choice {
+    fn finished(&self) -> bool {
+        self.wanted.is_empty()
+    }
+
+    fn choice(&mut self) -> Choice {
         let (scores, leader) = self.standing();
         let best = scores.iter().map(|score| score.low).fold(f64::NEG_INFINITY, at_least);
         let others = || (0..scores.len()).filter(|option| *option != leader);

@@ -7,18 +7,18 @@ use crate::base::lanes::LANES;
 use crate::compile::study::{Beside, MeasureKind, Query, RankOption, Target};
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Standing, Stop, next_after};
-use crate::engine::sampling::contest::Contest;
+use crate::engine::sampling::contest::contest;
 use crate::engine::sampling::forecast::{self, PilotStatistics};
 use crate::engine::sampling::pilot::Pilot;
-use crate::engine::sampling::procedure::{self, of_mean, sequence, value};
+use crate::engine::sampling::procedure::{self, of_mean, score, sequence, value};
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{Forecast, Likely, Watch};
 use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::stats::ranking::{Choice, Ranking, Share};
+use crate::stats::ranking::{Choice, Contest, Ranking, Share};
 use crate::stats::{self, Bounded};
 use crate::trials::budget::Budget;
-use crate::trials::cell::{Cell, Item, Reading, Series};
+use crate::trials::cell::{Item, Reading, Series};
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
 
@@ -78,7 +78,7 @@ pub(in crate::engine) struct RankSampling<'s> {
     jobs: Vec<Job<'s>>,
     /// The job of each option.
     job_of: Vec<usize>,
-    procedure: Contest,
+    procedure: Box<dyn Contest>,
     range: Option<(f64, f64)>,
     ahead: Option<Pilot>,
     /// What each option consumed.
@@ -118,7 +118,7 @@ impl<'s> RankSampling<'s> {
         series: Series,
         shows_evidence: bool,
     ) -> Result<Self, Fault> {
-        let procedure = Contest::new(&setup)?;
+        let procedure = contest(&setup)?;
         let range = setup.kind.range();
         let arms = setup.options.len();
         let mut targets: Vec<Target> = Vec::new();
@@ -180,7 +180,7 @@ impl<'s> RankSampling<'s> {
     /// The next round. All options advance side by side, so that a deadline finds every one of them as far as
     /// the others. No option gets more than `budget` trials in all.
     fn round(&self, budget: u64) -> Round {
-        let shares = self.procedure.next_round();
+        let shares = self.procedure.next_round().to_vec();
         let cut = shares.iter().any(|share| share.to > budget);
         let most = shares.iter().map(|share| share.to - share.from).max().unwrap_or(0);
         let (mut items, mut of): (Vec<Item>, Vec<(usize, u64)>) = Default::default();
@@ -308,7 +308,7 @@ impl<'s> RankSampling<'s> {
             self.spent = spent + budget.elapsed() - started;
             let round = self.round(budget.max_trials);
             if round.shares.is_empty() || self.procedure.finished() {
-                break if matches!(self.procedure, Contest::Each(_)) { Stop::Plan } else { Stop::Width };
+                break if self.procedure.is_planned() { Stop::Plan } else { Stop::Width };
             }
             if share.must_stop() {
                 if !budget.must_stop() {
@@ -364,12 +364,9 @@ impl<'s> RankSampling<'s> {
             })
             .collect();
         let finished = self.procedure.finished();
-        let side = |at: usize, arm: usize| {
-            let (running, holds) = self.procedure.side(at, arm)?;
-            Some((running.estimate(), running.interval(), holds))
-        };
         let sides = self.setup.beside.len();
-        let also = (0..arms).map(|arm| (0..sides).filter_map(|at| side(at, arm)).collect()).collect();
+        let also =
+            (0..arms).map(|arm| (0..sides).filter_map(|at| self.procedure.side(at, arm)).collect()).collect();
         let scale = self.scale();
         Ok(Some(RankOutcome { tallies, values, choice, finished, stop, scale, also, evidence }))
     }
@@ -390,7 +387,7 @@ impl<'s> RankSampling<'s> {
         let mut complete = true;
         for (share, places) in round.shares.iter().zip(&round.places) {
             let columns = self.places(share.arm);
-            let mut cells: Vec<Vec<Cell>> = vec![Vec::with_capacity(places.len()); columns.len()];
+            let mut scores = vec![Vec::with_capacity(places.len()); columns.len()];
             let mut broken = false;
             for &place in places {
                 match rows.row(place).filter(|_| place < prefix) {
@@ -409,15 +406,15 @@ impl<'s> RankSampling<'s> {
                         if let Some(mean) = self.means.get_mut(share.arm) {
                             mean.observe(value(first));
                         }
-                        for (cells, place) in cells.iter_mut().zip(&columns) {
-                            cells.push(row[*place]);
+                        for (scores, place) in scores.iter_mut().zip(&columns) {
+                            scores.push(score(&row[*place]));
                         }
                     }
                     _ => broken = true,
                 }
             }
             complete &= !broken;
-            self.procedure.feed(share.arm, &cells)?;
+            self.procedure.feed(share.arm, &scores)?;
         }
         Ok(complete)
     }

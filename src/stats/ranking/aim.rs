@@ -7,7 +7,7 @@ use super::{Booleans, Scores, Table};
 use crate::base::math;
 use crate::stats::invalid::Invalid;
 use crate::stats::spec::Range;
-use crate::stats::{Interval, Outcome, Running};
+use crate::stats::{Interval, Running};
 
 /// What is aimed at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,15 +64,8 @@ impl Aim {
     /// Appends the next scores of an arm, `None` where they are unresolved.
     pub(super) fn push(&mut self, arm: usize, scores: &[Option<f64>]) {
         match self {
-            Self::Probability(table) => {
-                let outcome =
-                    |score: &Option<f64>| score.map_or(Outcome::Unresolved, |x| Outcome::from(x > 0.5));
-                table.push(arm, &scores.iter().map(outcome).collect::<Vec<_>>());
-            }
-            Self::Mean(table, (low, high)) => {
-                let scaled = |score: &Option<f64>| score.map(|x| (x - *low) / (*high - *low));
-                table.push(arm, &scores.iter().map(scaled).collect::<Vec<_>>());
-            }
+            Self::Probability(table) => table.push(arm, &Booleans::outcomes(scores, (0.0, 1.0))),
+            Self::Mean(table, range) => table.push(arm, &Scores::outcomes(scores, *range)),
             Self::Tail { arms, .. } => {
                 let (running, interval) = &mut arms[arm];
                 for score in scores {

@@ -143,6 +143,10 @@ impl Table for Booleans {
         }
     }
 
+    fn outcome(score: Option<f64>) -> Outcome {
+        score.map_or(Outcome::Unresolved, |x| Outcome::from(x > 0.5))
+    }
+
     fn trials(&self, arm: usize) -> u64 {
         self.arms[arm].trials
     }

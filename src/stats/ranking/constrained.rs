@@ -14,10 +14,11 @@
 //! ```
 
 use super::aim::{Aim, Goal};
-use super::{Choice, Share};
+use super::contest::{Choice, Contest};
+use super::rounds::{Completed, Rounds, Share};
 use crate::base::math;
-use crate::stats::Running;
 use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Interval, Running};
 
 /// What each arm has to satisfy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,11 +44,10 @@ pub struct Constrained {
     dropped: Vec<bool>,
     threshold: f64,
     epsilon: f64,
-    word: u64,
     deviations: Vec<f64>,
     scale: f64,
     leader: usize,
-    pending: Vec<Share>,
+    rounds: Rounds,
     finished: bool,
 }
 
@@ -74,7 +74,6 @@ impl Constrained {
         let sides = bounds.iter().map(side).collect::<Result<_, Invalid>>()?;
         let (low, high) = goal.range();
         let rivals = math::at_least(arms as f64 - 1.0, 1.0);
-        let first = |arm| Share { arm, from: 0, to: word };
         Ok(Self {
             aim: Aim::new(goal, arms, epsilon, half)?,
             bounds,
@@ -83,53 +82,12 @@ impl Constrained {
             dropped: vec![false; arms],
             threshold: math::ln(rivals / half) + 1e-9,
             epsilon,
-            word,
             scale: high - low,
             leader: 0,
-            pending: (0..arms).map(first).collect(),
+            rounds: Rounds::new(arms, word, u64::MAX),
             finished: false,
             deviations,
         })
-    }
-
-    /// The trials that are wanted now; none once finished.
-    pub fn next_round(&self) -> &[Share] {
-        &self.pending
-    }
-
-    /// Whether the choice is certified, or that there is none.
-    pub const fn finished(&self) -> bool {
-        self.finished
-    }
-
-    /// The numbers of a constraint, arm by arm, and whether an arm satisfies it.
-    pub fn side(&self, constraint: usize, arm: usize) -> (&Running, Option<bool>) {
-        let side = &self.sides[constraint][arm];
-        (side, self.bounds[constraint].holds(side))
-    }
-
-    /// Takes the next scores of an arm, in index order: those of its score, then those of each constraint.
-    pub fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
-        let place = self.pending.iter().position(|share| share.arm == arm);
-        let fed = columns.first().map_or(0, Vec::len) as u64;
-        let wanted = place.map_or(0, |at| self.pending[at].to - self.pending[at].from);
-        range("outcomes", fed as f64, 0.0, wanted as f64)?;
-        let (Some(place), [scores, others @ ..]) = (place, columns) else { return Ok(()) };
-        self.aim.push(arm, scores);
-        for (side, values) in self.sides.iter_mut().zip(others) {
-            for value in values {
-                side[arm].observe(*value);
-            }
-        }
-        self.pending[place].from += fed;
-        if self.pending[place].from == self.pending[place].to {
-            self.pending.remove(place);
-            self.learn(arm);
-            if self.pending.is_empty() {
-                self.decide();
-            }
-        }
-        Ok(())
     }
 
     /// What is known of the constraints of an arm; what was once known stays known.
@@ -198,11 +156,8 @@ impl Constrained {
         }
         open.push(leader);
         open.sort_unstable();
-        let next = |arm: &usize| {
-            let from = self.aim.trials(*arm);
-            Share { arm: *arm, from, to: from + self.word }
-        };
-        self.pending = open.iter().map(next).collect();
+        let aim = &self.aim;
+        self.rounds.open(open.into_iter().map(|arm| (arm, aim.trials(arm))));
     }
 
     /// The arms that certainly satisfy the constraints, and than which no other one that may can be epsilon better.
@@ -216,10 +171,41 @@ impl Constrained {
         };
         sure.into_iter().filter(|arm| passes(&mut self.aim, *arm)).collect()
     }
+}
+
+impl Contest for Constrained {
+    fn next_round(&self) -> &[Share] {
+        self.rounds.wanted()
+    }
+
+    fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
+        let [scores, others @ ..] = columns else { return Ok(()) };
+        let completed = self.rounds.count(arm, scores.len())?;
+        self.aim.push(arm, scores);
+        for (side, values) in self.sides.iter_mut().zip(others) {
+            values.iter().for_each(|value| side[arm].observe(*value));
+        }
+        if completed >= Completed::Share {
+            self.learn(arm);
+        }
+        if completed == Completed::Round {
+            self.decide();
+        }
+        Ok(())
+    }
+
+    fn finished(&self) -> bool {
+        self.finished
+    }
+
+    fn side(&self, constraint: usize, arm: usize) -> Option<(f64, Interval, Option<bool>)> {
+        let side = &self.sides[constraint][arm];
+        Some((side.estimate(), side.interval(), self.bounds[constraint].holds(side)))
+    }
 
     /// The choice now, at the end or at a deadline: of several that carry the certificate the one that deviates least. Where
     /// all arms are excluded, there is none.
-    pub fn choice(&mut self) -> Choice {
+    fn choice(&mut self) -> Choice {
         let arms = self.feasible.len();
         if let Some(leader) = self.ahead() {
             self.leader = leader;

@@ -1,6 +1,8 @@
 //! Okamoto's bound on each arm at half of epsilon: the baseline, with a joint guarantee.
 
-use super::{Choice, Share};
+use super::contest::{Choice, Contest};
+use super::rounds::{Completed, Rounds, Share};
+use super::{Booleans, Table as _};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
 use crate::stats::{Counts, Outcome, sequence};
@@ -12,10 +14,9 @@ pub struct Each {
     /// Error of each arm.
     delta: f64,
     size: u64,
-    word: u64,
     /// Successes and trials of each arm with unresolved ones as failures, and unresolved ones.
     arms: Vec<(Counts, u64)>,
-    pending: Vec<Share>,
+    rounds: Rounds,
     deviations: Vec<f64>,
 }
 
@@ -32,17 +33,15 @@ impl Each {
         range("epsilon", epsilon, 1e-5, 1.0)?;
         range("trials a round", word as f64, 1.0, 1e9)?;
         probability("delta", delta)?;
-        let mut each = Self {
+        let size = size(arms, epsilon, delta);
+        Ok(Self {
             epsilon,
             delta: delta / arms as f64,
-            size: size(arms, epsilon, delta),
-            word,
+            size,
             arms: vec![(Counts::default(), 0); arms],
-            pending: Vec::new(),
+            rounds: Rounds::new(arms, word, size),
             deviations: Vec::new(),
-        };
-        each.open_round();
-        Ok(each)
+        })
     }
 
     /// Prefers arms by their deviations, one number per arm: the least decides among arms with the same shares, and among
@@ -53,47 +52,23 @@ impl Each {
         self
     }
 
-    fn open_round(&mut self) {
-        let from = self.arms[0].0.trials();
-        let to = if from + self.word < self.size { from + self.word } else { self.size };
-        if from < to {
-            self.pending = (0..self.arms.len()).map(|arm| Share { arm, from, to }).collect();
-        }
-    }
-
     /// Trials of each arm in all.
     pub const fn size(&self) -> u64 {
         self.size
     }
 
-    /// The trials that are wanted now. Empty once finished.
-    pub fn next_round(&self) -> &[Share] {
-        &self.pending
-    }
-
     /// Takes the next outcomes of an arm; refuses more than are wanted.
     pub fn feed(&mut self, arm: usize, outcomes: &[Outcome]) -> Result<(), Invalid> {
-        let place = self.pending.iter().position(|share| share.arm == arm);
-        let wanted = place.map_or(0, |k| self.pending[k].to - self.pending[k].from);
-        range("outcomes", outcomes.len() as f64, 0.0, wanted as f64)?;
-        let Some(place) = place else { return Ok(()) };
+        let completed = self.rounds.count(arm, outcomes.len())?;
         for outcome in outcomes {
             self.arms[arm].0.add(*outcome == Outcome::True);
             self.arms[arm].1 += u64::from(*outcome == Outcome::Unresolved);
         }
-        self.pending[place].from += outcomes.len() as u64;
-        if self.pending[place].from == self.pending[place].to {
-            self.pending.remove(place);
-            if self.pending.is_empty() {
-                self.open_round();
-            }
+        if completed == Completed::Round {
+            let from = self.arms[0].0.trials();
+            self.rounds.open((0..self.arms.len()).map(|arm| (arm, from)));
         }
         Ok(())
-    }
-
-    /// Whether all trials are there.
-    pub fn finished(&self) -> bool {
-        self.pending.is_empty()
     }
 
     /// The lowest and highest share of successes that an arm can have.
@@ -120,10 +95,29 @@ impl Each {
         };
         (reading(0).low, reading(unresolved).high)
     }
+}
+
+impl Contest for Each {
+    fn next_round(&self) -> &[Share] {
+        self.rounds.wanted()
+    }
+
+    fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
+        let outcomes = Booleans::outcomes(columns.first().map_or(&[], Vec::as_slice), (0.0, 1.0));
+        Self::feed(self, arm, &outcomes)
+    }
+
+    fn finished(&self) -> bool {
+        self.rounds.wanted().is_empty()
+    }
+
+    fn is_planned(&self) -> bool {
+        true
+    }
 
     /// The choice, with a gap that holds at any time. Unresolved trials count against the chosen arm and for its rivals,
     /// and widen the gap.
-    pub fn choice(&self) -> Choice {
+    fn choice(&mut self) -> Choice {
         let k = self.arms.len();
         let middle = |arm: usize| {
             let (low, high) = self.shares(arm);
@@ -134,8 +128,8 @@ impl Each {
         for arm in 1..k {
             // Of those with the same shares, but for a round of as many trials, the one that deviates least.
             let trials = |arm: usize| self.arms[arm].0.trials();
-            let is_alike =
-                trials(arm).abs_diff(trials(leader)) < self.word && self.shares(arm) == self.shares(leader);
+            let is_alike = trials(arm).abs_diff(trials(leader)) < self.rounds.word
+                && self.shares(arm) == self.shares(leader);
             if middle(arm) > middle(leader) || is_alike && of(arm) < of(leader) {
                 leader = arm;
             }

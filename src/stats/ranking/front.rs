@@ -23,10 +23,11 @@
 //! (Ville's inequality), and there are k (k - 1) m of them in all.
 
 use super::aim::{Aim, Goal};
-use super::{Choice, Share};
+use super::contest::{Choice, Contest};
+use super::rounds::{Completed, Rounds, Share};
 use crate::base::math;
-use crate::stats::Running;
 use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Interval, Running};
 
 /// What is known of an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +55,7 @@ pub struct Front {
     /// The arm that covered each arm that is left out.
     cover: Vec<Option<usize>>,
     threshold: f64,
-    word: u64,
-    pending: Vec<Share>,
+    rounds: Rounds,
     finished: bool,
 }
 
@@ -73,57 +73,15 @@ impl Front {
         let made = aims.iter().map(|(goal, epsilon)| Aim::new(*goal, arms, *epsilon, each));
         let joint = delta / (arms * aims.len()) as f64;
         let side = |(goal, _): &(Goal, f64)| Ok(vec![goal.running(joint)?; arms]);
-        let first = |arm| Share { arm, from: 0, to: word };
         Ok(Self {
             aims: made.collect::<Result<_, _>>()?,
             sides: aims[1..].iter().map(side).collect::<Result<_, Invalid>>()?,
             standing: vec![if arms == 1 { Standing::In } else { Standing::Open }; arms],
             cover: vec![None; arms],
             threshold: math::ln(misleading / bets) + 1e-9,
-            word,
-            pending: if arms == 1 { Vec::new() } else { (0..arms).map(first).collect() },
+            rounds: Rounds::new(if arms == 1 { 0 } else { arms }, word, u64::MAX),
             finished: arms == 1,
         })
-    }
-
-    /// The trials that are wanted now; none once finished.
-    pub fn next_round(&self) -> &[Share] {
-        &self.pending
-    }
-
-    /// Whether each arm is in the front or left out.
-    pub const fn finished(&self) -> bool {
-        self.finished
-    }
-
-    /// The number of an arm in an aim behind the first.
-    pub fn side(&self, aim: usize, arm: usize) -> &Running {
-        &self.sides[aim][arm]
-    }
-
-    /// Takes the next scores of an arm, in index order, those of each aim.
-    pub fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
-        let place = self.pending.iter().position(|share| share.arm == arm);
-        let fed = columns.first().map_or(0, Vec::len) as u64;
-        let wanted = place.map_or(0, |at| self.pending[at].to - self.pending[at].from);
-        range("outcomes", fed as f64, 0.0, wanted as f64)?;
-        let Some(place) = place else { return Ok(()) };
-        for (aim, scores) in self.aims.iter_mut().zip(columns) {
-            aim.push(arm, scores);
-        }
-        for (side, values) in self.sides.iter_mut().zip(columns.iter().skip(1)) {
-            for value in values {
-                side[arm].observe(*value);
-            }
-        }
-        self.pending[place].from += fed;
-        if self.pending[place].from == self.pending[place].to {
-            self.pending.remove(place);
-            if self.pending.is_empty() {
-                self.decide();
-            }
-        }
-        Ok(())
     }
 
     fn all(&self, wanted: impl Fn(Standing) -> bool) -> Vec<usize> {
@@ -190,15 +148,42 @@ impl Front {
             }
         }
         self.finished = !wanted.contains(&true);
-        let next = |arm: usize| {
-            let from = self.aims[0].trials(arm);
-            Share { arm, from, to: from + self.word }
-        };
-        self.pending = (0..wanted.len()).filter(|arm| wanted[*arm]).map(next).collect();
+        let aim = &self.aims[0];
+        let next = (0..wanted.len()).filter(|arm| wanted[*arm]);
+        self.rounds.open(next.map(|arm| (arm, aim.trials(arm))));
+    }
+}
+
+impl Contest for Front {
+    fn next_round(&self) -> &[Share] {
+        self.rounds.wanted()
+    }
+
+    fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
+        let completed = self.rounds.count(arm, columns.first().map_or(0, Vec::len))?;
+        for (aim, scores) in self.aims.iter_mut().zip(columns) {
+            aim.push(arm, scores);
+        }
+        for (side, values) in self.sides.iter_mut().zip(columns.iter().skip(1)) {
+            values.iter().for_each(|value| side[arm].observe(*value));
+        }
+        if completed == Completed::Round {
+            self.decide();
+        }
+        Ok(())
+    }
+
+    fn finished(&self) -> bool {
+        self.finished
+    }
+
+    fn side(&self, aim: usize, arm: usize) -> Option<(f64, Interval, Option<bool>)> {
+        let side = &self.sides[aim][arm];
+        Some((side.estimate(), side.interval(), None))
     }
 
     /// The front now, at the end or at a deadline: its arms are those that are certified.
-    pub fn choice(&self) -> Choice {
+    fn choice(&mut self) -> Choice {
         let front = self.all(|one| one == Standing::In);
         Choice {
             arm: front.first().copied().unwrap_or(0),

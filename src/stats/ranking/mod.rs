@@ -11,18 +11,22 @@ mod bet;
 mod booleans;
 mod certified;
 mod constrained;
+mod contest;
 mod each;
 mod front;
 mod gap;
 mod race;
+mod rounds;
 mod scores;
 
 pub use aim::Goal;
 pub use booleans::Booleans;
 pub use constrained::{Bound, Constrained};
+pub use contest::{Choice, Contest};
 pub use each::{Each, size};
 pub use front::Front;
 pub use race::{Allocation, Race};
+pub use rounds::Share;
 pub use scores::Scores;
 
 /// Procedures of a ranking.
@@ -32,37 +36,6 @@ pub enum Ranking {
     Betting(Allocation),
     /// Okamoto on each option (Algorithm 1 of Given-Wilson et al. 2017).
     Okamoto,
-}
-
-/// Trials `from .. to` of one arm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share {
-    /// The arm.
-    pub arm: usize,
-    /// First trial index.
-    pub from: u64,
-    /// One past the last.
-    pub to: u64,
-}
-
-/// The outcome of a ranking, at its end or at a deadline.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
-    /// The chosen arm.
-    pub arm: usize,
-    /// The mean of the chosen arm is within this of the best mean, with error at most delta; 1 if nothing
-    /// is certified, and possible before the end only for races.
-    pub gap: f64,
-    /// Other arms that are still in the race: they were not dropped for being worse than a leader.
-    pub open: Vec<usize>,
-    /// Arms that are worse than another, jointly with error at most delta: however many arms are the best, none of them
-    /// is here.
-    pub beaten: Vec<usize>,
-    /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best. Of very many
-    /// near the best not all are looked at.
-    pub certified: Vec<usize>,
-    /// Arms that violate a constraint, jointly with error at most delta.
-    pub excluded: Vec<usize>,
 }
 
 /// Outcomes of many trials for each arm, and the evidence in their differences: over the trials that both have, or over
@@ -76,6 +49,14 @@ pub trait Table {
 
     /// Appends the next outcomes of an arm, in index order.
     fn push(&mut self, arm: usize, outcomes: &[Self::Outcome]);
+
+    /// The outcome that a score in [0, 1] stands for; `None` is unresolved.
+    fn outcome(score: Option<f64>) -> Self::Outcome;
+
+    /// The outcomes that scores in a range stand for.
+    fn outcomes(scores: &[Option<f64>], (low, high): (f64, f64)) -> Vec<Self::Outcome> {
+        scores.iter().map(|score| Self::outcome(score.map(|x| (x - low) / (high - low)))).collect()
+    }
 
     /// Trials of an arm.
     fn trials(&self, arm: usize) -> u64;

@@ -15,7 +15,9 @@
 //! only be smaller; so what K reaches with them, it reaches in truth, at no further risk. A leader that hardly ever fails
 //! is certified by its own trials.
 
-use super::{Choice, Share, Table, bet, certified, gap};
+use super::contest::{Choice, Contest};
+use super::rounds::{Completed, Rounds, Share};
+use super::{Table, bet, certified, gap};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
 use std::cmp::Ordering;
@@ -37,16 +39,17 @@ pub struct Race<T> {
     epsilon: f64,
     /// ln((k - 1) / delta).
     threshold: f64,
-    word: u64,
     allocation: Allocation,
     live: Vec<usize>,
     leader: usize,
-    pending: Vec<Share>,
+    rounds: Rounds,
     arms: usize,
     /// Arms that do not pass yet, with the evidence: room to work.
     failing: Vec<(usize, f64)>,
     /// How far each arm is from what is wished: among equals the least comes first. Empty if there is no wish.
     deviations: Vec<f64>,
+    /// The range of scores.
+    range: (f64, f64),
     /// Whether a round is complete.
     decided: bool,
     finished: bool,
@@ -68,19 +71,18 @@ impl<T: Table> Race<T> {
         probability("delta", delta)?;
         let rivals = math::at_least(arms as f64 - 1.0, 1.0);
         let alone = arms == 1;
-        let first = |arm| Share { arm, from: 0, to: word };
         Ok(Self {
             table: T::new(arms, epsilon),
             epsilon,
             threshold: math::ln(rivals / delta) + 1e-9,
-            word,
             allocation,
             live: (0..arms).collect(),
             leader: 0,
-            pending: if alone { Vec::new() } else { (0..arms).map(first).collect() },
+            rounds: Rounds::new(if alone { 0 } else { arms }, word, u64::MAX),
             arms,
             failing: Vec::new(),
             deviations: Vec::new(),
+            range: (0.0, 1.0),
             decided: false,
             finished: alone,
         })
@@ -95,26 +97,20 @@ impl<T: Table> Race<T> {
         self
     }
 
-    /// The trials that are wanted now: all of this round that were not fed yet, ascending by arm. Empty once
-    /// finished.
-    pub fn next_round(&self) -> &[Share] {
-        &self.pending
+    /// Takes scores in a range, of which `epsilon` is a share.
+    #[must_use]
+    pub const fn over(mut self, range: (f64, f64)) -> Self {
+        self.range = range;
+        self
     }
 
     /// Takes the next outcomes of an arm, in index order; when the round is complete, decides. Refuses more
     /// outcomes than are wanted.
     pub fn feed(&mut self, arm: usize, outcomes: &[T::Outcome]) -> Result<(), Invalid> {
-        let place = self.pending.iter().position(|share| share.arm == arm);
-        let wanted = place.map_or(0, |k| self.pending[k].to - self.pending[k].from);
-        range("outcomes", outcomes.len() as f64, 0.0, wanted as f64)?;
-        let Some(place) = place else { return Ok(()) };
+        let completed = self.rounds.count(arm, outcomes.len())?;
         self.table.push(arm, outcomes);
-        self.pending[place].from += outcomes.len() as u64;
-        if self.pending[place].from == self.pending[place].to {
-            self.pending.remove(place);
-            if self.pending.is_empty() {
-                self.decide();
-            }
+        if completed == Completed::Round {
+            self.decide();
         }
         Ok(())
     }
@@ -208,16 +204,8 @@ impl<T: Table> Race<T> {
             self.failing.push((leader, 0.0));
         }
         self.failing.sort_unstable_by_key(|(arm, _)| *arm);
-        let word = self.word;
-        self.pending.extend(self.failing.iter().map(|(arm, _)| {
-            let from = self.table.trials(*arm);
-            Share { arm: *arm, from, to: from + word }
-        }));
-    }
-
-    /// Whether the race is decided.
-    pub const fn finished(&self) -> bool {
-        self.finished
+        let table = &self.table;
+        self.rounds.open(self.failing.iter().map(|(arm, _)| (*arm, table.trials(*arm))));
     }
 
     /// The outcomes so far.
@@ -248,9 +236,23 @@ impl<T: Table> Race<T> {
         let (table, threshold) = (&mut self.table, self.threshold);
         gap::smallest(most, |gap| table.least_evidence(&rivals, arm, gap) - threshold)
     }
+}
 
-    /// The choice now, at the end or at a deadline.
-    pub fn choice(&mut self) -> Choice {
+impl<T: Table> Contest for Race<T> {
+    fn next_round(&self) -> &[Share] {
+        self.rounds.wanted()
+    }
+
+    fn feed(&mut self, arm: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
+        let outcomes = T::outcomes(columns.first().map_or(&[], Vec::as_slice), self.range);
+        Self::feed(self, arm, &outcomes)
+    }
+
+    fn finished(&self) -> bool {
+        self.finished
+    }
+
+    fn choice(&mut self) -> Choice {
         if !self.decided {
             // No round is complete: the trials there are have to do.
             self.leader = self.ahead();
@@ -266,7 +268,7 @@ impl<T: Table> Race<T> {
         let mut arm = self.leader;
         // A decided race keeps its promise: only who carries the certificate takes the leader's place. Before that those
         // that came out as the leader are as good as it, if they were tried as often, but for a round.
-        let (table, leader, word) = (&self.table, self.leader, self.word);
+        let (table, leader, word) = (&self.table, self.leader, self.rounds.word);
         let alike = |other: &&usize| {
             table.trials(**other).abs_diff(table.trials(leader)) < word && table.is_alike(**other, leader)
         };

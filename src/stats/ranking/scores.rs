@@ -114,6 +114,10 @@ impl Table for Scores {
         }
     }
 
+    fn outcome(score: Option<f64>) -> Option<f64> {
+        score
+    }
+
     fn trials(&self, arm: usize) -> u64 {
         self.arms[arm].least.len() as u64
     }
