@@ -3,14 +3,13 @@
 //! At each instant at which somebody moves and whose next seconds are recorded, trials of the model begin with those who are
 //! there. The share of them in which a property holds is compared with whether it held in the recording.
 
-use super::course::{Beyond, course};
 use super::displacement::Displacement;
 use super::formulas::targets;
 use super::instants::Instant;
 use super::kinds::CONSTANT;
 use super::monitor::Judged;
 use super::region::{Fit, HORIZONS};
-use super::situation::{Replay, is_of_a_place};
+use super::situation::Replay;
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
 use crate::engine::trials::sample::{Followed, sample};
@@ -18,7 +17,7 @@ use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::trials::cell::{Reading, Series};
+use crate::trials::cell::Series;
 use std::collections::BTreeSet;
 
 /// Displacements are those of so many seconds, or of the horizon if that is shorter.
@@ -98,11 +97,8 @@ pub fn evaluate(
     let trials = if kind == CONSTANT { 1 } else { options.trials };
     let numbered: Vec<(u64, &Judged)> = (0..).zip(instants).collect();
     let one = |(number, judged): &(u64, &Judged)| -> Result<Row, Vec<Diagnostic>> {
-        let study = match own.study_at(judged.instant) {
-            Ok(study) if judged.reach.is_some() => study,
-            Err(errors) if errors.is_empty() || !errors.iter().all(is_of_a_place) => return Err(errors),
-            _ => return Ok((vec![None; own.formulas.names.len()], None)),
-        };
+        let study = own.study_if_placed(judged.instant)?.filter(|_| judged.reach.is_some());
+        let Some(study) = study else { return Ok((vec![None; own.formulas.names.len()], None)) };
         let targets = targets(&study);
         let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
         let Some(target) = targets.first() else { return Ok((Vec::new(), None)) };
@@ -160,23 +156,14 @@ fn predict(
     let Ok(found) = sample(prepared, columns, series, trials, followed) else {
         return (vec![None; columns.len()], None);
     };
-    let share = |column: usize| {
-        let known = found.readings.iter().filter_map(|row| match row.get(column) {
-            Some(Reading::Truth(truth)) => Some(*truth),
-            _ => None,
-        });
-        let (held, count) = known.fold((0u64, 0u64), |(held, all), truth| (held + u64::from(truth), all + 1));
-        (count > 0).then(|| held as f64 / count as f64)
-    };
-    let cells = (0..columns.len()).map(|k| share(k).zip(truths.get(k).copied().flatten())).collect();
+    let cells = (0..columns.len()).map(|k| found.share(k).zip(truths.get(k).copied().flatten())).collect();
     let place = |time: &f64| ticks.binary_search(&tick(time)).ok();
     let at_times = |way: &Vec<Vec2>| times.iter().filter_map(|time| way.get(place(time)?).copied()).collect();
     let ways: Vec<Vec<Vec2>> = found.paths.iter().map(at_times).collect();
     let fit = |time: f64| {
         let predicted: Vec<Vec2> =
             found.paths.iter().filter_map(|way| way.get(place(&time)?).copied()).collect();
-        let seen = course(&replay.recording, instant.person, instant.time + time, Beyond::Unresolved);
-        Fit::of(&predicted, seen?.0)
+        Fit::of(&predicted, replay.place_at(instant.person, instant.time + time)?)
     };
     (
         cells,
@@ -193,9 +180,8 @@ fn displacement(
     ways: &[Vec<Vec2>],
     reach: f64,
 ) -> Option<Displacement> {
-    let at =
-        |id: u32, time: f64| course(&replay.recording, id, time, Beyond::Unresolved).map(|(place, _)| place);
-    let whole: Option<Vec<Vec2>> = times.iter().map(|time| at(instant.person, instant.time + time)).collect();
+    let at = |time: &f64| replay.place_at(instant.person, instant.time + time);
+    let whole: Option<Vec<Vec2>> = times.iter().map(at).collect();
     let others: Vec<Vec<Vec2>> = times
         .iter()
         .map(|time| {

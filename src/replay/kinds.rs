@@ -3,7 +3,7 @@
 use super::situation::Replay;
 use crate::compile::presets::PRESETS;
 use crate::model::Kind;
-use crate::syntax::ast::{Field, Item, ScenarioFile};
+use crate::syntax::ast::{Field, Ident, Item, Recorded, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::parse_scenario;
@@ -151,11 +151,7 @@ impl Replay {
 
 /// The name of the tracks of the first people of a model who were recorded.
 pub fn first_tracks(file: &ScenarioFile) -> Option<String> {
-    file.items.iter().find_map(|item| match item {
-        Item::Agents(decl) => decl.recorded.as_ref().map(|recorded| recorded.tracks.name.clone()),
-        Item::Group(decl) => decl.recorded.as_ref().map(|recorded| recorded.tracks.name.clone()),
-        _ => None,
-    })
+    file.items.iter().find_map(|item| Some(recorded(item)?.1.tracks.name.clone()))
 }
 
 /// The kind of the first people of a model.
@@ -164,11 +160,16 @@ pub fn user_kind(replay: &Replay) -> Option<String> {
 }
 
 fn kind_of_user(file: &ScenarioFile) -> Option<&str> {
-    file.items.iter().find_map(|item| match item {
-        Item::Agents(decl) if decl.recorded.is_some() => Some(decl.kind.name.as_str()),
-        Item::Group(decl) if decl.recorded.is_some() => Some(decl.kind.name.as_str()),
+    file.items.iter().find_map(|item| Some(recorded(item)?.0.name.as_str()))
+}
+
+/// The kind of people who were recorded, and from where they are.
+fn recorded(item: &Item) -> Option<(&Ident, &Recorded)> {
+    match item {
+        Item::Agents(decl) => Some((&decl.kind, decl.recorded.as_ref()?)),
+        Item::Group(decl) => Some((&decl.kind, decl.recorded.as_ref()?)),
         _ => None,
-    })
+    }
 }
 
 /// The preset of a name, or the only one whose name begins so.

@@ -6,7 +6,7 @@
 use super::course::{Beyond, course};
 use super::formulas::{self, Asked, targets};
 use super::instants::Instant;
-use super::situation::{Replay, is_of_a_place};
+use super::situation::Replay;
 use crate::base::geometry::Vec2;
 use crate::compile::study::World;
 use crate::engine::trials::given::{averaged, judge};
@@ -39,32 +39,24 @@ pub fn monitor(
     threads: &Threads,
 ) -> Result<Vec<Judged>, Vec<Diagnostic>> {
     let one = |instant: &Instant| {
-        let (truths, values, reach) = match replay.study_at(*instant) {
-            Ok(study) => {
-                let mut targets = targets(&study);
-                let count = targets.len();
-                targets.extend(formulas::numbers(&study).iter().map(|(_, target)| *target));
-                let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
-                match targets.first().and_then(|target| study.worlds.get(target.world)) {
-                    Some(world) => {
-                        let agents = &world.scenario.agents;
-                        let radius = agents
-                            .get(replay.place_of_user(agents))
-                            .map_or(0.0, |agent| agent.body[Parameter::Radius].mean());
-                        let readings = readings(replay, *instant, (world, &columns), beyond);
-                        let truths = readings.iter().take(count).map(truth).collect();
-                        let values = readings.iter().skip(count).map(value).collect();
-                        (truths, values, Some(2.0 * radius))
-                    }
-                    None => (Vec::new(), Vec::new(), None),
-                }
-            }
-            Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => {
-                (vec![None; replay.formulas.names.len()], Vec::new(), None)
-            }
-            Err(errors) => return Err(errors),
+        let judged = |truths, values, reach| Ok(Judged { instant: *instant, truths, values, reach });
+        let Some(study) = replay.study_if_placed(*instant)? else {
+            return judged(vec![None; replay.formulas.names.len()], Vec::new(), None);
         };
-        Ok(Judged { instant: *instant, truths, values, reach })
+        let mut targets = targets(&study);
+        let count = targets.len();
+        targets.extend(formulas::numbers(&study).iter().map(|(_, target)| *target));
+        let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
+        let Some(world) = targets.first().and_then(|target| study.worlds.get(target.world)) else {
+            return judged(Vec::new(), Vec::new(), None);
+        };
+        let agents = &world.scenario.agents;
+        let user = agents.get(replay.place_of_user(agents));
+        let radius = user.map_or(0.0, |agent| agent.body[Parameter::Radius].mean());
+        let readings = readings(replay, *instant, (world, &columns), beyond);
+        let truths = readings.iter().take(count).map(Reading::truth).collect();
+        let values = readings.iter().skip(count).map(Reading::value).collect();
+        judged(truths, values, Some(2.0 * radius))
     };
     threads.map(instants, one).into_iter().collect()
 }
@@ -76,20 +68,6 @@ pub fn numbers(replay: &Replay, instants: &[Instant]) -> Vec<Asked> {
     found.into_iter().map(|(asked, _)| asked).collect()
 }
 
-fn truth(reading: &Reading) -> Option<bool> {
-    match reading {
-        Reading::Truth(truth) => Some(*truth),
-        _ => None,
-    }
-}
-
-fn value(reading: &Reading) -> Option<f64> {
-    match reading {
-        Reading::Value(value) => Some(*value),
-        _ => None,
-    }
-}
-
 /// Whether each of some columns of a world held from an instant on; the user's own track is never continued.
 pub(super) fn happened(
     replay: &Replay,
@@ -97,7 +75,7 @@ pub(super) fn happened(
     of: (&World, &[usize]),
     beyond: Beyond,
 ) -> Vec<Option<bool>> {
-    readings(replay, instant, of, beyond).iter().map(truth).collect()
+    readings(replay, instant, of, beyond).iter().map(Reading::truth).collect()
 }
 
 /// What each of some columns of a world came to.

@@ -5,18 +5,17 @@
 //! the share of the bin in which the recorded number lies. All persons of a time are simulated together; only those who
 //! are recorded throughout count, in the recording and in trials alike.
 
-use super::course::{Beyond, course};
 use super::evaluate::PREDICTED;
 use super::formulas::targets;
+use super::measure::encounters::meeting;
 use super::monitor::Judged;
-use super::situation::{Replay, is_of_a_place};
+use super::situation::Replay;
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::base::tick::Tick;
 use crate::engine::trials::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
-use crate::model::AgentId;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::cell::Series;
 
@@ -44,10 +43,8 @@ pub fn realism(
     (threads, drivers): (&Threads, &MakeDrivers),
 ) -> Result<Vec<PersonRealism>, Vec<Diagnostic>> {
     let own = replay.with_kind(kind)?;
-    let mut times: Vec<(u64, &[Judged])> = Vec::new();
-    for group in instants.chunk_by(|a, b| a.instant.time == b.instant.time) {
-        times.push((times.len() as u64, group));
-    }
+    let groups = instants.chunk_by(|a, b| a.instant.time == b.instant.time);
+    let times: Vec<(u64, &[Judged])> = (0..).zip(groups).collect();
     let one = |(number, group): &(u64, &[Judged])| {
         let series = Series { seed, branch: (number & 0xffff) as u16 };
         at_one_time(&own, group, series, drivers)
@@ -62,11 +59,7 @@ fn at_one_time(
     drivers: &MakeDrivers,
 ) -> Result<Vec<PersonRealism>, Vec<Diagnostic>> {
     let Some(Judged { instant: user, reach: Some(reach), .. }) = group.first() else { return Ok(Vec::new()) };
-    let study = match replay.study_at(*user) {
-        Ok(study) => study,
-        Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => return Ok(Vec::new()),
-        Err(errors) => return Err(errors),
-    };
+    let Some(study) = replay.study_if_placed(*user)? else { return Ok(Vec::new()) };
     let index = targets(&study).first().map_or(study.base, |target| target.world);
     let Some(prepared) = PreparedWorld::of(&study, index, series.seed, drivers) else {
         return Ok(Vec::new());
@@ -77,13 +70,10 @@ fn at_one_time(
     let times: Vec<f64> = (0..=(last / step + 1e-9) as u64).map(|k| k as f64 * step).collect();
     let ticks: Vec<u64> = times.iter().map(|time| (time / dt).round() as u64).collect();
     let (mut agents, mut persons, mut ways) = (Vec::new(), Vec::new(), Vec::new());
-    for (k, agent) in scenario.agents.iter().enumerate() {
-        let [id] = agent.start.seen[..] else { continue };
-        let id = replay.written(user.person, id);
-        let at = |time: &f64| Some(course(&replay.recording, id, user.time + time, Beyond::Unresolved)?.0);
-        let way: Option<Vec<Vec2>> = times.iter().map(at).collect();
+    for (agent, id) in replay.persons(user.person, &scenario.agents) {
+        let way: Option<Vec<Vec2>> = times.iter().map(|time| replay.place_at(id, user.time + time)).collect();
         if let Some(way) = way {
-            agents.push(AgentId(k as u32));
+            agents.push(agent);
             persons.push(id);
             ways.push(way);
         }
@@ -147,20 +137,6 @@ fn features(
         }
     }
     all
-}
-
-/// The time until two bodies that keep their velocities touch, s.
-fn meeting(apart: Vec2, relative: Vec2, reach: f64) -> f64 {
-    let (a, b) = (relative.norm_squared(), apart.dot(&relative));
-    let c = apart.norm_squared() - reach * reach;
-    let root = b * b - a * c;
-    if c <= 0.0 {
-        0.0
-    } else if b >= 0.0 || root < 0.0 {
-        f64::INFINITY
-    } else {
-        c / (root.sqrt() - b)
-    }
 }
 
 #[cfg(test)]

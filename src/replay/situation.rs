@@ -1,6 +1,7 @@
 //! A model with a recording, compiled at one instant after the other.
 
 use super::cast::Cast;
+use super::course::{Beyond, course};
 use super::formulas::Formulas;
 use super::instants::{Instant, instants};
 use super::source::source;
@@ -9,7 +10,7 @@ use crate::base::geometry::Vec2;
 use crate::compile::study::Study;
 use crate::compile::{Files, Input, Seen, Setting, Sighting, Site, examine};
 use crate::data::tracks::{PersonState, Recording, Velocity};
-use crate::model::Agent;
+use crate::model::{Agent, AgentId};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -162,15 +163,8 @@ impl Replay {
     /// What is wrong with it.
     pub(super) fn study_at(&self, instant: Instant) -> Result<Study, Vec<Diagnostic>> {
         let Instant { time, person } = instant;
-        let sighting = |one: PersonState| Sighting {
-            id: self.written(person, one.id),
-            position: one.position,
-            velocity: one.velocity,
-            driving: one.velocity,
-            density: 0.0,
-        };
-        let present: Vec<Sighting> = self.recording.at(time).into_iter().map(sighting).collect();
-        let mut people = present;
+        let present = self.recording.at(time).into_iter();
+        let mut people: Vec<_> = present.map(|one| sighting(self.written(person, one.id), &one)).collect();
         people.sort_by_key(|one| one.id);
         let past = people.iter().map(|one| (one.id, self.past(self.written(person, one.id), time))).collect();
         let seen = Seen { groups: groups(&people), people, past };
@@ -186,6 +180,28 @@ impl Replay {
         let errors: Vec<Diagnostic> =
             examined.found.into_iter().filter(|one| one.severity == Severity::Error).collect();
         examined.study.filter(|_| errors.is_empty()).ok_or(errors)
+    }
+
+    /// The model at an instant; `None` where its people have no place there.
+    pub(super) fn study_if_placed(&self, instant: Instant) -> Result<Option<Study>, Vec<Diagnostic>> {
+        match self.study_at(instant) {
+            Ok(study) => Ok(Some(study)),
+            Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => Ok(None),
+            Err(errors) => Err(errors),
+        }
+    }
+
+    /// Where a person is at a time of the recording.
+    pub(super) fn place_at(&self, id: u32, time: f64) -> Option<Vec2> {
+        Some(course(&self.recording, id, time, Beyond::Unresolved)?.0)
+    }
+
+    /// The agents that are one recorded person, with the person that each is where `user` is the user.
+    pub(super) fn persons(&self, user: u32, agents: &[Agent]) -> impl Iterator<Item = (AgentId, u32)> {
+        agents.iter().enumerate().filter_map(move |(k, agent)| match agent.start.seen[..] {
+            [id] => Some((AgentId(k as u32), self.written(user, id))),
+            _ => None,
+        })
     }
 
     /// Times, s, and positions, m, of somebody up to a time.
@@ -210,6 +226,11 @@ fn without_tracks(input: &Input<'_>, tracks: &str) -> Files {
 }
 
 /// Whether an error is about where somebody stands: another instant may have none.
-pub(super) fn is_of_a_place(error: &Diagnostic) -> bool {
+fn is_of_a_place(error: &Diagnostic) -> bool {
     matches!(error.code, Code::E0409 | Code::E0801 | Code::E0802 | Code::E0803)
+}
+
+/// A person as a model sees them.
+pub(super) fn sighting(id: u32, PersonState { position, velocity, .. }: &PersonState) -> Sighting {
+    Sighting { id, position: *position, velocity: *velocity, driving: *velocity, density: 0.0 }
 }

@@ -16,6 +16,18 @@ pub enum Reading {
     Faulty,
 }
 
+impl Reading {
+    /// The truth of a formula.
+    pub fn truth(&self) -> Option<bool> {
+        if let Self::Truth(truth) = self { Some(*truth) } else { None }
+    }
+
+    /// The value of a metric.
+    pub fn value(&self) -> Option<f64> {
+        if let Self::Value(value) = self { Some(*value) } else { None }
+    }
+}
+
 /// What one trial yields for one column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {

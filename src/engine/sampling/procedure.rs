@@ -12,7 +12,7 @@ use crate::stats::{
     self, AnyEstimator, AnyTest, Bounded, Coverage, Decision, Estimator as _, Hypothesis, Outcome, Readings,
     Rule as _, Statement,
 };
-use crate::trials::cell::{Cell, Reading};
+use crate::trials::cell::Cell;
 
 /// Bins of the histogram of a metric.
 const BINS: usize = 40;
@@ -61,27 +61,17 @@ pub(in crate::engine) enum Procedure {
 
 /// The outcome of a cell for a procedure of probabilities.
 pub(in crate::engine) fn outcome(cell: &Cell) -> Outcome {
-    match cell.reading {
-        Reading::Truth(held) => Outcome::from(held),
-        Reading::Value(_) | Reading::Unresolved | Reading::Faulty => Outcome::Unresolved,
-    }
+    cell.reading.truth().map_or(Outcome::Unresolved, Outcome::from)
 }
 
 /// The value of a cell for a procedure of metrics.
 pub(in crate::engine) fn value(cell: &Cell) -> Option<f64> {
-    match cell.reading {
-        Reading::Value(value) => Some(value),
-        Reading::Truth(_) | Reading::Unresolved | Reading::Faulty => None,
-    }
+    cell.reading.value()
 }
 
 /// What a cell counts for: a number, 1 or 0 for a truth value.
 pub(in crate::engine) fn score(cell: &Cell) -> Option<f64> {
-    match cell.reading {
-        Reading::Truth(held) => Some(f64::from(u8::from(held))),
-        Reading::Value(value) => Some(value),
-        Reading::Unresolved | Reading::Faulty => None,
-    }
+    cell.reading.value().or_else(|| cell.reading.truth().map(|held| f64::from(u8::from(held))))
 }
 
 /// What a measure aims at; `None` if options are not compared by it.

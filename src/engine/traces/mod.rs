@@ -133,10 +133,8 @@ fn trace(
         follow_steps(prepared, run, &pick.reasons, budget)?
     };
     let one = |(reason, Seen { bars, reading }): (&Reason, Seen)| {
-        let truth = match reading {
-            Some(Reading::Truth(truth)) => Some(if truth { Shows::Holds } else { Shows::Fails }),
-            _ => None,
-        };
+        let truth = reading.and_then(|reading| reading.truth());
+        let truth = truth.map(|truth| if truth { Shows::Holds } else { Shows::Fails });
         let is_resolved = matches!(reading, Some(Reading::Truth(_) | Reading::Value(_)));
         let known = reason.witness.clone();
         let shows = known.as_ref().map(|witness| witness.shows).or(truth);

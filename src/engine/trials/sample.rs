@@ -21,6 +21,15 @@ pub struct Sample {
     pub paths: Vec<Vec<Vec2>>,
 }
 
+impl Sample {
+    /// The share of the trials that say anything of a column in which it is true.
+    pub fn share(&self, column: usize) -> Option<f64> {
+        let known = || self.readings.iter().filter_map(|row| row.get(column)?.truth());
+        let (held, count) = (known().filter(|truth| *truth).count(), known().count());
+        (count > 0).then(|| held as f64 / count as f64)
+    }
+}
+
 /// Whose ways are kept, and at which ticks, ascending.
 #[derive(Clone, Copy, Debug)]
 pub struct Followed<'t> {

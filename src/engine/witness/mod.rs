@@ -21,7 +21,6 @@ use crate::engine::witness::checkpoints::Checkpoints;
 use crate::kernel::{Address, Run};
 use crate::logic::{Root, Sought};
 use crate::trials::budget::Budget;
-use crate::trials::cell::Reading;
 use crate::trials::group::ColumnGroup;
 use crate::trials::observer::Observer;
 
@@ -149,10 +148,7 @@ fn witness(
             (None, Tick(monitor.decided_at()[0]), said)
         }
         (Root::Robustness(root, _), _) => {
-            let value = match observer.reading(0) {
-                Reading::Value(value) => Some(value),
-                _ => None,
-            };
+            let value = observer.reading(0).value();
             if record.is_full() {
                 return Some(Witness { value, time: program.scenario.clock.seconds(now), ..blank });
             }

@@ -2,11 +2,9 @@
 
 use crate::advise::groups;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::compile::Sighting;
-use crate::data::tracks::PersonState;
 use crate::replay::evaluate::{PREDICTED, eligible};
 use crate::replay::instants::Instant;
-use crate::replay::situation::Replay;
+use crate::replay::situation::{Replay, sighting};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One instant of each person who moves and whose next seconds are recorded, drawn at random; by time.
@@ -38,14 +36,7 @@ const COMPANY: usize = 5;
 
 /// Somebody with those who walk along at an instant.
 fn companions(replay: &Replay, Instant { time, person }: Instant) -> Vec<u32> {
-    let sighting = |one: PersonState| Sighting {
-        id: one.id,
-        position: one.position,
-        velocity: one.velocity,
-        driving: one.velocity,
-        density: 0.0,
-    };
-    let people: Vec<Sighting> = replay.recording.at(time).into_iter().map(sighting).collect();
+    let people: Vec<_> = replay.recording.at(time).iter().map(|one| sighting(one.id, one)).collect();
     let group = groups(&people).into_iter().find(|group| group.contains(&person) && group.len() <= COMPANY);
     group.unwrap_or_else(|| vec![person])
 }

@@ -8,7 +8,6 @@ use crate::base::geometry::cross;
 use crate::base::math::atan2;
 use crate::compile::Site;
 use crate::model::{Family, Law};
-use crate::replay::course::{Beyond, course};
 use crate::replay::evaluate::PREDICTED;
 use crate::replay::instants::Instant;
 use crate::replay::situation::Replay;
@@ -21,8 +20,8 @@ pub(super) fn changes(replay: &Replay, people: &[Instant]) -> (Vec<f64>, Vec<f64
     let (mut turns, mut paces) = (Vec::new(), Vec::new());
     for Instant { time, person } in people {
         let now = replay.recording.person_at(*person, *time);
-        let then = course(&replay.recording, *person, time + PREDICTED, Beyond::Unresolved);
-        let (Some(now), Some((then, _))) = (now, then) else { continue };
+        let then = replay.place_at(*person, time + PREDICTED);
+        let (Some(now), Some(then)) = (now, then) else { continue };
         let (way, speed) = (then - now.position, now.velocity.norm());
         if speed > STANDS {
             paces.push(way.norm() / PREDICTED / speed);

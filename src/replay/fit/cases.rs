@@ -8,15 +8,15 @@ use crate::engine::trials::sample::{Followed, Sample, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;
-use crate::replay::course::{Beyond, course};
+use crate::replay::course::Beyond;
 use crate::replay::evaluate::PREDICTED;
 use crate::replay::formulas::targets;
 use crate::replay::instants::Instant;
 use crate::replay::monitor::happened;
 use crate::replay::region::{Fit, HORIZONS};
-use crate::replay::situation::{Replay, is_of_a_place};
+use crate::replay::situation::Replay;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::trials::cell::{Reading, Series};
+use crate::trials::cell::Series;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -75,18 +75,10 @@ impl Cases {
         let mut persons: Vec<u32> = instants.iter().map(|one| one.person).collect();
         persons.sort_unstable();
         persons.dedup();
-        let mut groups: Vec<(u64, Vec<Instant>)> = Vec::new();
-        for instant in instants {
-            let number = groups.len() as u64;
-            match groups.last_mut() {
-                Some((_, group)) if !counting.by_properties && group[0].time == instant.time => {
-                    group.push(*instant);
-                }
-                _ => groups.push((number, vec![*instant])),
-            }
-        }
+        let together = |a: &Instant, b: &Instant| !counting.by_properties && a.time == b.time;
+        let groups: Vec<(u64, &[Instant])> = (0..).zip(instants.chunk_by(together)).collect();
         let number: BTreeMap<u32, usize> = persons.iter().copied().zip(0..).collect();
-        let one = |(at, group): &(u64, Vec<Instant>)| case(replay, group, (*at, &number), counting);
+        let one = |(at, group): &(u64, &[Instant])| case(replay, group, (*at, &number), counting);
         let cases = threads.map(&groups, one).into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(Self { instants: cases.into_iter().flatten().collect(), persons, counting })
     }
@@ -118,49 +110,33 @@ fn case(
     counting: Counting,
 ) -> Result<Option<Case>, Vec<Diagnostic>> {
     let Some(user) = group.first().copied() else { return Ok(None) };
-    let study = match replay.study_at(user) {
-        Ok(study) => study,
-        Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => return Ok(None),
-        Err(errors) => return Err(errors),
-    };
+    let Some(study) = replay.study_if_placed(user)? else { return Ok(None) };
     let targets = targets(&study);
     let index = targets.first().map_or(study.base, |target| target.world);
     let Some(world) = study.worlds.get(index) else { return Ok(None) };
     let (clock, last) = (world.scenario.clock, world.scenario.horizon);
     let last = PREDICTED.min(clock.seconds(Tick(last.0)));
     let dt = clock.seconds(Tick(1));
-    let times: Vec<f64> = HORIZONS.into_iter().filter(|time| *time <= last + 1e-9).collect();
-    let counts = |id: u32| group.iter().any(|one| one.person == id);
+    let by_properties = counting.by_properties;
+    let is_followed = |time: &f64| !by_properties && *time <= last + 1e-9;
+    let times: Vec<f64> = HORIZONS.into_iter().filter(is_followed).collect();
     let (mut agents, mut persons, mut recorded) = (Vec::new(), Vec::new(), Vec::new());
-    for (k, agent) in world.scenario.agents.iter().enumerate() {
-        let [id] = agent.start.seen[..] else { continue };
-        let id = replay.written(user.person, id);
-        let Some(person) = number.get(&id).filter(|_| counts(id)) else { continue };
-        let then = |time: &f64| Some(course(&replay.recording, id, user.time + time, Beyond::Unresolved)?.0);
-        agents.push(AgentId(k as u32));
-        persons.push(*person);
-        recorded.push(times.iter().map(then).collect());
+    let (mut columns, mut truths) = (Vec::new(), Vec::new());
+    if by_properties {
+        columns.extend(targets.iter().map(|target| target.column));
+        truths = happened(replay, user, (world, &columns), Beyond::Onward);
+        persons.extend(number.get(&user.person));
+    } else {
+        for (agent, id) in replay.persons(user.person, &world.scenario.agents) {
+            let is_counted = group.iter().any(|one| one.person == id);
+            let Some(person) = number.get(&id).filter(|_| is_counted) else { continue };
+            agents.push(agent);
+            persons.push(*person);
+            recorded.push(times.iter().map(|time| replay.place_at(id, user.time + time)).collect());
+        }
     }
     let series = Series { seed: counting.seed, branch: (at & 0xffff) as u16 };
-    if counting.by_properties {
-        let columns: Vec<usize> = targets.iter().map(|target| target.column).collect();
-        let truths = happened(replay, user, (world, &columns), Beyond::Onward);
-        let persons = number.get(&user.person).copied().into_iter().collect();
-        let (agents, ticks, recorded) = (Vec::new(), Vec::new(), Vec::new());
-        return Ok(Some(Case {
-            world: index,
-            columns,
-            truths,
-            agents,
-            persons,
-            ticks,
-            recorded,
-            series,
-            study,
-        }));
-    }
     let ticks = times.iter().map(|time| (time / dt).round() as u64).collect();
-    let (columns, truths) = (Vec::new(), Vec::new());
     Ok(Some(Case { world: index, columns, truths, agents, persons, ticks, recorded, series, study }))
 }
 
@@ -206,19 +182,8 @@ impl Case {
         let Some(person) = self.persons.first() else { return Vec::new() };
         let one = |(column, truth): (usize, &Option<bool>)| {
             let held = f64::from(u8::from((*truth)?));
-            let known: Vec<bool> = found
-                .readings
-                .iter()
-                .filter_map(|row| match row.get(column) {
-                    Some(Reading::Truth(truth)) => Some(*truth),
-                    _ => None,
-                })
-                .collect();
             // Without a trial that says anything both outcomes are as likely.
-            let share = match known.len() {
-                0 => 0.5,
-                count => known.iter().filter(|truth| **truth).count() as f64 / count as f64,
-            };
+            let share = found.share(column).unwrap_or(0.5);
             Some((*person, (share - held) * (share - held)))
         };
         self.truths.iter().enumerate().filter_map(one).collect()

@@ -36,6 +36,14 @@ pub struct Searching {
     pub confidence: f64,
 }
 
+impl Searching {
+    /// The bootstrap over so many persons.
+    const fn bootstrap(self, persons: usize) -> Bootstrap {
+        let Self { draws, seed, confidence, .. } = self;
+        Bootstrap { persons, draws, seed, confidence }
+    }
+}
+
 /// A generation of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Generation {
@@ -164,13 +172,8 @@ pub fn search(
     tried.sort_by(|(_, a), (_, b)| loss(a).total_cmp(&loss(b)));
     let (place, after) = tried[0].clone();
 
-    let bootstrap = |persons: usize| Bootstrap {
-        persons,
-        draws: options.draws,
-        seed: options.seed,
-        confidence: options.confidence,
-    };
-    let intervals = intervals(&place, &tried, &held, &bootstrap(held.iter().filter(|held| !**held).count()));
+    let own_persons = held.iter().filter(|held| !**held).count();
+    let intervals = intervals(&place, &tried, &held, &options.bootstrap(own_persons));
     let value = |k: usize, at: f64| fitted[k].value(starts[k], at);
     let candidate = |k: usize| Candidate {
         parameter: fitted[k],
@@ -181,7 +184,7 @@ pub fn search(
     let before = cases.losses(&[], threads, drivers);
     let compared = |of: bool| {
         let (before, after) = (own(&before, &held, of), own(&after, &held, of));
-        compare(&before, &after, &bootstrap(before.len()))
+        compare(&before, &after, &options.bootstrap(before.len()))
     };
     Ok(Found {
         parameters: (0..fitted.len()).map(candidate).collect(),
@@ -202,14 +205,8 @@ impl Comparison {
     ) -> Option<Self> {
         let values: Vec<(Fitted, f64)> =
             found.parameters.iter().map(|one| (one.parameter, one.value)).collect();
-        let bootstrap = Bootstrap {
-            persons: cases.persons.len(),
-            draws: options.draws,
-            seed: options.seed,
-            confidence: options.confidence,
-        };
         let of = |values: &[(Fitted, f64)]| cases.losses(values, threads, drivers);
-        compare(&of(&[]), &of(&values), &bootstrap)
+        compare(&of(&[]), &of(&values), &options.bootstrap(cases.persons.len()))
     }
 }
 

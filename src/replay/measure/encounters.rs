@@ -51,14 +51,22 @@ pub fn meetings(seen: &[(Vec2, Vec2)], radius: f64, brake: f64) -> Encounters {
 
 /// The first time at which a point that drifts comes within a reach of the origin; infinite if it does not within an hour.
 fn time_to_collision(way: Vec2, drift: Vec2, reach: f64) -> f64 {
-    let c = way.norm_squared() - reach * reach;
-    if c <= 0.0 {
-        return 0.0;
-    }
-    let (a, b) = (drift.norm_squared(), way.dot(&drift));
-    let root = b * b - a * c;
-    let time = if b >= 0.0 || root < 0.0 { f64::INFINITY } else { c / (root.sqrt() - b) };
+    let time = meeting(way, drift, reach);
     if time > LATEST { f64::INFINITY } else { time }
+}
+
+/// The time until two bodies that keep their velocities touch, s.
+pub(in crate::replay) fn meeting(apart: Vec2, relative: Vec2, reach: f64) -> f64 {
+    let (a, b) = (relative.norm_squared(), apart.dot(&relative));
+    let c = apart.norm_squared() - reach * reach;
+    let root = b * b - a * c;
+    if c <= 0.0 {
+        0.0
+    } else if b >= 0.0 || root < 0.0 {
+        f64::INFINITY
+    } else {
+        c / (root.sqrt() - b)
+    }
 }
 
 /// Not a number for two who do not approach each other.
