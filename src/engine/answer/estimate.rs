@@ -10,7 +10,7 @@ use crate::engine::sampling::estimate::{Advance, EstimateSampling};
 use crate::engine::sampling::watch::Forecast;
 use crate::engine::trials::executor::Executor;
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::engine::witness;
+use crate::engine::witness::{self, Inspected};
 use crate::logic::Root;
 use crate::stats::{Coverage, Decision, Statement};
 use crate::trials::budget::Budget;
@@ -183,12 +183,13 @@ impl Answers<'_> {
             _ if cut => Vec::new(),
             _ => witness::extremes(&entry.tally),
         };
-        let settings = &result.asked.settings;
         let unit = match &measure.kind {
-            MeasureKind::Curve { dimension, .. } => dimension.to_string(),
-            _ => result.unit.clone(),
+            MeasureKind::Curve { dimension, .. } => &dimension.to_string(),
+            _ => &result.unit,
         };
-        result.witnesses = self.witnesses(&unit, prepared, (measure.target.column, None), &picks, settings);
+        let (column, settings) = (measure.target.column, &result.asked.settings[..]);
+        let of = Inspected { prepared, column, advice: None, settings, unit };
+        result.witnesses = self.witnesses(of, &picks);
         Ok(result)
     }
 }

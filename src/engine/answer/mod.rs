@@ -18,8 +18,7 @@ use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{Forecast, Watch};
 use crate::engine::trials::executor::Executor;
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::engine::witness;
-use crate::engine::witness::cause;
+use crate::engine::witness::{self, Inspected, cause};
 use crate::logic::{Root, Sought};
 use crate::stats::Levels;
 use crate::trials::budget::{Budget, DEFAULT_TRIALS};
@@ -140,17 +139,10 @@ impl Answers<'_> {
     }
 
     /// The witnesses of a column of a world, in which perhaps somebody was advised.
-    pub(in crate::engine) fn witnesses(
-        &self,
-        unit: &str,
-        prepared: &PreparedWorld,
-        (column, advice): (usize, Option<(usize, usize)>),
-        picks: &[(Shows, u64)],
-        settings: &[(String, String)],
-    ) -> Vec<Witness> {
-        let calls = (self.call, self.budget);
+    pub(in crate::engine) fn witnesses(&self, of: Inspected<'_>, picks: &[(Shows, u64)]) -> Vec<Witness> {
         let picks = if self.call.explains { picks } else { &[] };
-        witness::find(prepared, column, advice, picks, calls, settings, unit)
+        let calls = (self.call, self.budget);
+        picks.iter().filter_map(|pick| witness::witness(of, *pick, calls)).collect()
     }
 
     /// Counts, and what they warn of.
@@ -246,13 +238,9 @@ impl Answers<'_> {
         let shown = first.map_or(String::new(), |first| {
             let why =
                 cause::unresolved(first.prepared, first.column, first.item, (self.call.seed, self.budget));
-            let index = first.item.index;
-            let mut command = self.call.line.simulate(&first.settings, self.call.seed, index);
-            if let Some(label) = witness::label(first.prepared, first.item.advice) {
-                command.push_str(&format!(" --move '{label}'"));
-            }
+            let command = witness::command(self.call, first.prepared, &first.settings, first.item);
             let why = if why.is_empty() { why } else { format!("{why}; ") };
-            format!("; trial {index}: {why}see {command}")
+            format!("; trial {}: {why}see {command}", first.item.index)
         });
         result.warnings.push(format!("{how_many}{shown}"));
     }

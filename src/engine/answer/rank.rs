@@ -10,7 +10,7 @@ use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::Forecast;
 use crate::engine::trials::executor::Executor;
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::engine::witness;
+use crate::engine::witness::{self, Inspected};
 use crate::model::Move;
 use crate::stats::Coverage;
 use crate::trials::budget::Budget;
@@ -140,8 +140,9 @@ impl Answers<'_> {
                 _ if was_cut(prepared, column, tally) => Vec::new(),
                 _ => witness::extremes(tally),
             };
-            let of = (column, options[arm].advice);
-            result.witnesses = self.witnesses(&result.unit, prepared, of, &picks, &own);
+            let (advice, settings, unit) = (options[arm].advice, &own[..], &result.unit[..]);
+            let of = Inspected { prepared, column, advice, settings, unit };
+            result.witnesses = self.witnesses(of, &picks);
         }
         if listed.is_empty {
             let said = constraints(beside);

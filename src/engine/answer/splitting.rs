@@ -87,8 +87,9 @@ impl Answers<'_> {
         });
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
-        let settings = &result.asked.settings;
-        result.witnesses = self.witnesses(&result.unit, prepared, (column, None), &picks, settings);
+        let (settings, unit) = (&result.asked.settings[..], &result.unit[..]);
+        result.witnesses =
+            self.witnesses(witness::Inspected { prepared, column, advice: None, settings, unit }, &picks);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }

@@ -17,7 +17,7 @@ use crate::compile::Study;
 use crate::engine::call::Call;
 use crate::engine::outcome::{CallResult, Shows, Witness};
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::engine::witness;
+use crate::engine::witness::{self, Inspected};
 use crate::kernel::process::ViewReadings;
 use crate::kernel::{Address, End, Program, Run, State, start};
 use crate::logic;
@@ -139,10 +139,10 @@ fn trace(
         let known = reason.witness.clone();
         let shows = known.as_ref().map(|witness| witness.shows).or(truth);
         let find = || {
-            let picks = [(truth.unwrap_or(Shows::Lowest), pick.trial)];
+            let (column, advice, settings) = (reason.column, pick.advice, &reason.settings[..]);
             let unit = &result.results[reason.result].unit;
-            let calls = (call, budget);
-            witness::find(prepared, reason.column, pick.advice, &picks, calls, &reason.settings, unit).pop()
+            let of = Inspected { prepared, column, advice, settings, unit };
+            witness::witness(of, (truth.unwrap_or(Shows::Lowest), pick.trial), (call, budget))
         };
         let witness = known.or_else(|| if is_resolved { find() } else { None });
         Shown { result: reason.result, label: reason.label.clone(), shows, witness, bars }

@@ -12,7 +12,7 @@ use crate::logic::{
     AtomId, Node, NodeId, Part, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, leaves,
     sides, sources,
 };
-use crate::model::{AgentId, Bool, Who};
+use crate::model::{Bool, Who};
 use crate::trials::budget::Budget;
 
 /// Most truth values and numbers that are kept of a trial.
@@ -42,20 +42,14 @@ impl Record {
         self.states += 1;
     }
 
-    /// Whether the trial is longer than what is kept: then nothing tells what decided it.
-    pub(in crate::engine) const fn is_full(&self) -> bool {
-        self.full
-    }
-}
-
-impl Record {
-    /// Calls `look` with the record in the form that `logic` reads.
-    fn read<T>(
+    /// Explains the trial by what was recorded of it; `None` where there was too much to record.
+    pub(in crate::engine) fn explain<T>(
         &self,
         prepared: &PreparedWorld,
         budget: &Budget,
-        look: impl FnOnce(&Recording<'_>) -> T,
-    ) -> T {
+        state_at: &dyn Fn(Tick) -> Option<State>,
+        look: impl FnOnce(&Explained<'_>) -> T,
+    ) -> Option<T> {
         let (atoms, signals) = self.width;
         let place = |width: usize, at: u64, one: u32| at as usize * width + one as usize;
         let atoms =
@@ -63,14 +57,15 @@ impl Record {
         let signals = |signal: SignalId, at: u64| {
             self.signals.get(place(signals, at, signal.0)).copied().unwrap_or(f64::NAN)
         };
-        look(&Recording {
+        let recording = Recording {
             atoms: &atoms,
             signals: &signals,
             seen: self.states as u64,
             horizon: prepared.horizon,
             clock: prepared.program.scenario.clock,
             stop: &|| budget.is_late(),
-        })
+        };
+        (!self.full).then(|| look(&Explained { prepared, recording: &recording, state_at }))
     }
 }
 
@@ -116,14 +111,17 @@ impl From<String> for Said {
     }
 }
 
-/// What decided the truth of a formula in a trial; no words where nothing in particular did.
-pub(in crate::engine) fn truth(
-    prepared: &PreparedWorld,
-    root: NodeId,
-    (record, budget): (&Record, &Budget),
-    state_at: impl Fn(Tick) -> Option<State>,
-) -> Said {
-    record.read(prepared, budget, |recording| {
+/// A trial that is explained: what is recorded of it, and its states.
+pub(in crate::engine) struct Explained<'t> {
+    prepared: &'t PreparedWorld,
+    recording: &'t Recording<'t>,
+    state_at: &'t dyn Fn(Tick) -> Option<State>,
+}
+
+impl Explained<'_> {
+    /// What decided the truth of a formula; no words where nothing in particular did.
+    pub(in crate::engine) fn truth(&self, root: NodeId) -> Said {
+        let Self { prepared, recording, .. } = *self;
         let Ok(explanation) = explain(&prepared.tree, root, recording) else { return Said::default() };
         // Of those who are not there nothing is to be said, unless there is nobody else.
         let absent = |reason: &&Reason| {
@@ -147,35 +145,24 @@ pub(in crate::engine) fn truth(
             None if explanation.reasons.len() > 1 => {
                 "no agent of the quantified set was present".to_owned().into()
             }
-            None if explanation.reasons.len() == 1 => {
-                closing(prepared, &explanation.reasons[0], recording, &state_at)
-            }
+            None if explanation.reasons.len() == 1 => self.closing(&explanation.reasons[0]),
             Some(reason) => {
                 let then = of_then(reason);
                 let told = if then.len() <= 2 { then } else { vec![reason] };
-                let list = told.into_iter().map(|one| closing(prepared, one, recording, &state_at));
-                Said::joined(list.collect(), "; ")
+                Said::joined(told.into_iter().map(|one| self.closing(one)).collect(), "; ")
             }
             None if explanation.verdict.is_some() => {
                 "its value does not depend on the trial".to_owned().into()
             }
             None => Said::default(),
         }
-    })
-}
+    }
 
-/// Where the value of a metric in a trial comes from, in words, and since when it was so.
-pub(in crate::engine) fn number(
-    prepared: &PreparedWorld,
-    root: TermId,
-    (value, unit): (f64, &str),
-    (record, budget): (&Record, &Budget),
-    state_at: impl Fn(Tick) -> Option<State>,
-) -> (Option<Tick>, Said) {
-    record.read(prepared, budget, |recording| {
-        let (_, found) = sources(&prepared.tree, root, Tick(0), recording);
-        let never =
-            value == f64::INFINITY && matches!(prepared.tree.terms[root.0 as usize], Term::TimeUntil(_));
+    /// Where the value of a metric comes from, in words, and since when it was so.
+    pub(in crate::engine) fn number(&self, root: TermId, value: f64, unit: &str) -> (Option<Tick>, Said) {
+        let tree = &self.prepared.tree;
+        let (_, found) = sources(tree, root, Tick(0), self.recording);
+        let never = value == f64::INFINITY && matches!(tree.terms[root.0 as usize], Term::TimeUntil(_));
         let text = if never { "not within the horizon".to_owned() } else { words::brief(value, unit) };
         let is_beyond =
             |source: &Source| matches!(source, Source::Signal { value, .. } if !value.is_finite());
@@ -190,39 +177,29 @@ pub(in crate::engine) fn number(
                 (None, text.into())
             }
             [Source::Formula(reason)] => {
-                let closing = closing(prepared, reason, recording, &state_at);
+                let closing = self.closing(reason);
                 let words = format!("{text}, when {}", closing.words);
                 (Some(reason.to), closing.saying(words))
             }
             [Source::Signal { at, .. }] => {
-                let from = origin(prepared, &found[0], false, (&state_at, recording.stop));
+                let from = self.origin(&found[0], false);
                 let words = format!("{text}, {}", from.words);
                 (Some(*at), from.saying(words))
             }
             [] => (None, text.into()),
-            several => {
-                let told = |source: &Source| full(prepared, source, recording, &state_at);
-                let said = Said::joined(
-                    several.iter().map(told).filter(Said::is_told).take(NAMED).collect(),
-                    " and ",
-                );
-                let words = format!("{text}: {}", said.words);
-                (None, Said { decider: None, ..said }.saying(words))
-            }
+            several => (None, self.listed(&text, several).unwrap_or_else(|| format!("{text}: ").into())),
         }
-    })
-}
+    }
 
-/// Which condition has the margin that the robustness of a formula is in a trial, and when.
-pub(in crate::engine) fn margin(
-    prepared: &PreparedWorld,
-    root: NodeId,
-    (value, unit): (Option<f64>, &str),
-    (record, budget): (&Record, &Budget),
-    state_at: impl Fn(Tick) -> Option<State>,
-) -> (Option<Tick>, Said) {
-    record.read(prepared, budget, |recording| {
-        let Some(found) = critical(&prepared.tree, root, recording) else {
+    /// Which condition has the margin that the robustness of a formula is, and when.
+    pub(in crate::engine) fn margin(
+        &self,
+        root: NodeId,
+        value: Option<f64>,
+        unit: &str,
+    ) -> (Option<Tick>, Said) {
+        let prepared = self.prepared;
+        let Some(found) = critical(&prepared.tree, root, self.recording) else {
             return (None, value.map_or(String::new(), |value| words::brief(value, unit)).into());
         };
         // All conditions have the unit of the margin, which a probability of it has not.
@@ -234,220 +211,188 @@ pub(in crate::engine) fn margin(
             said.words = format!("{}, of `{text}`", said.words);
         }
         if let (Some(state), Node::Compare(_, x, y)) =
-            (state_at(found.at), &prepared.tree.nodes[found.leaf.0 as usize])
+            ((self.state_at)(found.at), &prepared.tree.nodes[found.leaf.0 as usize])
         {
-            let mut search = Search::of(prepared, &state, recording.stop);
+            let mut search = self.search(&state);
             for side in [x, y] {
                 if let Term::Signal(signal) = &prepared.tree.terms[side.0 as usize] {
                     search.extremum(&prepared.signals[signal.0 as usize]);
                 }
             }
             if search.is_empty() {
-                spoken_of(&mut search, prepared, found.leaf);
+                self.name_spoken_of(&mut search, found.leaf);
             }
-            said = said.with(names(prepared, &search.named(), &state));
+            said = said.with(names(&search));
         }
         (Some(found.at), said)
-    })
-}
+    }
 
-/// A state that gave a number its value; `full` says the value and the moment too.
-fn origin(
-    prepared: &PreparedWorld,
-    source: &Source,
-    full: bool,
-    (state_at, stop): (&impl Fn(Tick) -> Option<State>, &dyn Fn() -> bool),
-) -> Said {
-    let Source::Signal { signal, at, value } = source else { return Said::default() };
-    let Some((text, dimension)) = prepared.texts.signals.get(signal.0 as usize) else {
-        return Said::default();
-    };
-    let said = if full {
-        format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), moment(prepared, *at))
-    } else {
-        format!("`{text}`")
-    };
-    if let Some(state) = state_at(*at) {
-        let mut search = Search::of(prepared, &state, stop);
-        let signal = &prepared.signals[signal.0 as usize];
+    fn search<'s>(&'s self, state: &'s State) -> Search<'s> {
+        Search::of(self.prepared, state, self.recording.stop)
+    }
+
+    /// A state that gave a number its value; `full` says the value and the moment too.
+    fn origin(&self, source: &Source, full: bool) -> Said {
+        let Source::Signal { signal, at, value } = source else { return Said::default() };
+        let Some((text, dimension)) = self.prepared.texts.signals.get(signal.0 as usize) else {
+            return Said::default();
+        };
+        let said = if full {
+            format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), self.moment(*at))
+        } else {
+            format!("`{text}`")
+        };
+        let Some(state) = (self.state_at)(*at) else { return said.into() };
+        let mut search = self.search(&state);
+        let signal = &self.prepared.signals[signal.0 as usize];
         search.extremum(signal);
         if search.is_empty() {
             search.name_all_in(signal);
         }
         search.name_members(text, |tell| signal.mentions(tell));
-        return Said::from(said).with(names(prepared, &search.named(), &state));
+        Said::from(said).with(names(&search))
     }
-    said.into()
-}
 
-/// One of several sources of a number, with its moment.
-fn full(
-    prepared: &PreparedWorld,
-    source: &Source,
-    recording: &Recording<'_>,
-    state_at: &impl Fn(Tick) -> Option<State>,
-) -> Said {
-    match source {
-        Source::Formula(reason) => {
-            let closing = closing(prepared, reason, recording, state_at);
-            let words = format!("{} at {}", closing.words, moment(prepared, reason.to));
-            closing.saying(words)
+    /// The first few of several sources of a number behind some words, each with its moment; `None` where nothing is known of
+    /// any.
+    fn listed(&self, head: &str, sources: &[Source]) -> Option<Said> {
+        let told = sources.iter().map(|source| match source {
+            Source::Formula(reason) => {
+                let closing = self.closing(reason);
+                let words = format!("{} at {}", closing.words, self.moment(reason.to));
+                closing.saying(words)
+            }
+            signal @ Source::Signal { .. } => self.origin(signal, true),
+        });
+        let list: Vec<Said> = told.filter(Said::is_told).take(NAMED).collect();
+        let words = |said: &Said| format!("{head}: {}", said.words);
+        let said = (!list.is_empty()).then(|| Said::joined(list, " and "))?;
+        Some(Said { words: words(&said), decider: None, ..said })
+    }
+
+    fn moment(&self, at: Tick) -> String {
+        match self.prepared.program.scenario.clock {
+            Clock::Steps => format!("step {}", at.0),
+            clock => format!("{} s", words::number(clock.seconds(at))),
         }
-        signal @ Source::Signal { .. } => origin(prepared, signal, true, (state_at, recording.stop)),
     }
-}
 
-fn moment(prepared: &PreparedWorld, at: Tick) -> String {
-    match prepared.program.scenario.clock {
-        Clock::Steps => format!("step {}", at.0),
-        clock => format!("{} s", words::number(clock.seconds(at))),
+    /// A reason in words.
+    fn closing(&self, reason: &Reason) -> Said {
+        let prepared = self.prepared;
+        let scenario = &prepared.program.scenario;
+        let word = words::truth(reason.value);
+        match &prepared.tree.nodes[reason.leaf.0 as usize] {
+            Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms[atom.0 as usize] => {
+                let name = scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
+                format!("{name} is {}present", if reason.value { "" } else { "not " }).into()
+            }
+            Node::Atom(atom) => {
+                let Some(text) = prepared.texts.atoms.get(atom.0 as usize) else { return Said::default() };
+                let condition = &prepared.atoms[atom.0 as usize];
+                let head = format!("`{text}` {word}");
+                let Some(state) = (self.state_at)(reason.to) else { return head.into() };
+                if let Some(part) = prepared.texts.parts.get(&atom.0)
+                    && let Some(because) = self.because((part, text), reason.value, &state)
+                {
+                    return because;
+                }
+                let mut search = self.search(&state);
+                search.walk(condition, reason.value);
+                search.name_members(text, |tell| condition.mentions(tell));
+                let named = decided(&search);
+                if named.is_told() {
+                    return Said::from(head).with(named);
+                }
+                let copies = copies(scenario, (condition, reason.value), false, &self.search(&state));
+                let colon = if copies.is_empty() { "" } else { ": " };
+                format!("{head}{colon}{}", copies.join(", ")).into()
+            }
+            Node::Compare(..) => {
+                let Some((text, _)) = prepared.texts.comparisons.get(&reason.leaf.0) else {
+                    return Said::default();
+                };
+                let found = sides(&prepared.tree, reason.leaf, reason.to, self.recording);
+                let head = format!("`{text}` {word}");
+                if let Some(said) = self.listed(&head, &found) {
+                    return said;
+                }
+                let Some(state) = (self.state_at)(reason.to) else { return head.into() };
+                let mut search = self.search(&state);
+                self.name_spoken_of(&mut search, reason.leaf);
+                Said::from(head).with(decided(&search))
+            }
+            _ => Said::default(),
+        }
+    }
+
+    /// A condition that is made of others in words, with those of them that decide in a state and the agents in these.
+    fn because(&self, (part, whole): (&study::Part, &str), truth: bool, state: &State) -> Option<Said> {
+        let found = grounds(part, truth, &self.search(state))?;
+        let mut search = self.search(state);
+        let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+        let people = |at: usize, who: Who| {
+            let id = match who {
+                Who::Agent(id) => Some(id),
+                Who::Running(of) => found[at].given.get(of as usize).copied(),
+            };
+            id.and_then(|id| self.search(state).name_of(id))
+        };
+        let parts: Vec<&study::Part> = found.iter().map(|ground| ground.part).collect();
+        let texts = self.prepared.texts.words(&parts, &people)?;
+        for (ground, text) in found.iter().zip(&texts) {
+            let condition = ground.condition();
+            ground.given.iter().for_each(|id| search.name(*id));
+            search.walk(&condition, ground.truth);
+            search.name_members(text, |tell| condition.mentions(tell));
+            let (scenario, is_part) = (&self.prepared.program.scenario, !std::ptr::eq(ground.part, part));
+            owners.extend(copies(scenario, (&condition, ground.truth), is_part, &self.search(state)));
+            said.push(words::condition((text, ground.truth)));
+        }
+        let owners = each(owners);
+        let mut named = decided(&search);
+        if !named.is_told() && !owners.is_empty() {
+            named.words = format!(": {}", owners.join(", "));
+        }
+        Some(Said::from(words::because((whole, truth), &said)).with(named))
+    }
+
+    /// Names the agents who are there of whom a comparison of numbers over time speaks one by one.
+    fn name_spoken_of(&self, search: &mut Search<'_>, leaf: NodeId) {
+        let tree = &self.prepared.tree;
+        let Node::Compare(_, x, y) = tree.nodes[leaf.0 as usize] else { return };
+        for side in [x, y] {
+            let (_, signals) = leaves(tree, &[Part::Term(side)]).unwrap_or_default();
+            for signal in signals {
+                search.name_all_in(&self.prepared.signals[signal.0 as usize]);
+            }
+        }
     }
 }
 
 /// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
-fn names(prepared: &PreparedWorld, who: &[AgentId], state: &State) -> Said {
-    let agents: Vec<String> = who.iter().filter_map(|id| name_of(prepared, *id, state)).collect();
+fn names(search: &Search<'_>) -> Said {
+    let agents: Vec<String> = search.named().iter().filter_map(|id| search.name_of(*id)).collect();
     let words = if agents.is_empty() { String::new() } else { format!(": {}", agents.join(", ")) };
     Said { words, decider: None, agents }
 }
 
-fn name_of(prepared: &PreparedWorld, id: AgentId, state: &State) -> Option<String> {
-    let scenario = &prepared.program.scenario;
-    scenario.agents.get(id.0 as usize)?;
-    Some(state.name_of(scenario, id, 0))
-}
-
-/// A reason in words.
-fn closing(
-    prepared: &PreparedWorld,
-    reason: &Reason,
-    recording: &Recording<'_>,
-    state_at: &impl Fn(Tick) -> Option<State>,
-) -> Said {
-    let word = words::truth(reason.value);
-    match &prepared.tree.nodes[reason.leaf.0 as usize] {
-        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms[atom.0 as usize] => {
-            let name = prepared.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
-            format!("{name} is {}present", if reason.value { "" } else { "not " }).into()
-        }
-        Node::Atom(atom) => {
-            let Some(text) = prepared.texts.atoms.get(atom.0 as usize) else { return Said::default() };
-            let condition = &prepared.atoms[atom.0 as usize];
-            let stop = recording.stop;
-            if let Some((part, state)) = prepared.texts.parts.get(&atom.0).zip(state_at(reason.to))
-                && let Some(because) = because((prepared, stop), (part, text), reason.value, &state)
-            {
-                return because;
-            }
-            let state = state_at(reason.to);
-            if let Some(state) = &state {
-                let mut search = Search::of(prepared, state, stop);
-                search.walk(condition, reason.value);
-                search.name_members(text, |tell| condition.mentions(tell));
-                let named = decided(prepared, search, state);
-                if named.is_told() {
-                    return Said::from(format!("`{text}` {word}")).with(named);
-                }
-            }
-            let of = |state: &State| {
-                let asked = Search::of(prepared, state, stop);
-                copies(&prepared.program.scenario, (condition, reason.value), false, &asked)
-            };
-            let copies = state.as_ref().map_or_else(Vec::new, of);
-            let colon = if copies.is_empty() { "" } else { ": " };
-            format!("`{text}` {word}{colon}{}", copies.join(", ")).into()
-        }
-        Node::Compare(..) => {
-            let Some((text, _)) = prepared.texts.comparisons.get(&reason.leaf.0) else {
-                return Said::default();
-            };
-            let found = sides(&prepared.tree, reason.leaf, reason.to, recording);
-            let told = |source: &Source| full(prepared, source, recording, state_at);
-            let list: Vec<Said> = found.iter().map(told).filter(Said::is_told).take(NAMED).collect();
-            let head = format!("`{text}` {word}");
-            if list.is_empty() {
-                let Some(state) = state_at(reason.to) else { return head.into() };
-                let mut search = Search::of(prepared, &state, recording.stop);
-                spoken_of(&mut search, prepared, reason.leaf);
-                return Said::from(head).with(decided(prepared, search, &state));
-            }
-            let said = Said::joined(list, " and ");
-            let words = format!("{head}: {}", said.words);
-            Said { decider: None, ..said }.saying(words)
-        }
-        _ => Said::default(),
-    }
-}
-
-/// A condition that is made of others in words, with those of them that decide in a state and the agents in these.
-fn because(
-    (prepared, stop): (&PreparedWorld, &dyn Fn() -> bool),
-    (part, whole): (&study::Part, &str),
-    truth: bool,
-    state: &State,
-) -> Option<Said> {
-    let found = grounds(part, truth, &Search::of(prepared, state, stop))?;
-    let mut search = Search::of(prepared, state, stop);
-    let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
-    let people = |at: usize, who: Who| {
-        let id = match who {
-            Who::Agent(id) => Some(id),
-            Who::Running(of) => found[at].given.get(of as usize).copied(),
-        };
-        id.and_then(|id| name_of(prepared, id, state))
-    };
-    let parts: Vec<&study::Part> = found.iter().map(|ground| ground.part).collect();
-    let texts = prepared.texts.words(&parts, &people)?;
-    for (ground, text) in found.iter().zip(&texts) {
-        let condition = ground.condition();
-        ground.given.iter().for_each(|id| search.name(*id));
-        search.walk(&condition, ground.truth);
-        search.name_members(text, |tell| condition.mentions(tell));
-        let asked = Search::of(prepared, state, stop);
-        let is_part = !std::ptr::eq(ground.part, part);
-        owners.extend(copies(&prepared.program.scenario, (&condition, ground.truth), is_part, &asked));
-        said.push(words::condition((text, ground.truth)));
-    }
-    let owners = each(owners);
-    let mut named = decided(prepared, search, state);
-    if !named.is_told() && !owners.is_empty() {
-        named.words = format!(": {}", owners.join(", "));
-    }
-    Some(Said::from(words::because((whole, truth), &said)).with(named))
-}
-
-/// The agents who are there of whom a comparison of numbers over time speaks one by one.
-fn spoken_of(search: &mut Search<'_>, prepared: &PreparedWorld, leaf: NodeId) {
-    let Node::Compare(_, x, y) = prepared.tree.nodes[leaf.0 as usize] else { return };
-    for side in [x, y] {
-        let (_, signals) = leaves(&prepared.tree, &[Part::Term(side)]).unwrap_or_default();
-        for signal in signals {
-            search.name_all_in(&prepared.signals[signal.0 as usize]);
-        }
-    }
-}
-
 /// Who was found, in words: the first with its place and the number that was compared.
-fn decided(prepared: &PreparedWorld, search: Search<'_>, state: &State) -> Said {
-    let name = |id| name_of(prepared, id, state);
-    let decider = decider::decider(&search, &prepared.program.scenario, name);
+fn decided(search: &Search<'_>) -> Said {
+    let said = names(search);
+    let Some(decider) = decider::decider(search) else { return said };
     // A gap has two ends; who is in a set that is compared as a whole did not decide alone.
     let mut compared = Vec::new();
     if let Some((a, b)) = search.compared() {
         for side in [a, b] {
-            side.mentions(&mut |id| {
-                if !compared.contains(&id) {
-                    compared.push(id);
-                }
-            });
+            side.mentions(&mut |id| compared.push(id));
         }
     }
+    let mut compared = each(compared);
     compared.truncate(if compared.len() > NAMED { 0 } else { NAMED });
-    let said = names(prepared, &search.named(), state);
-    let Some(decider) = decider else { return said };
     let words = decider::written(&decider, &said.agents);
     let own = [Some(decider.agent.clone()), decider.other.clone()].into_iter().flatten();
-    let ends = compared.into_iter().filter_map(name);
+    let ends = compared.into_iter().filter_map(|id| search.name_of(id));
     let agents = each(own.chain(said.agents).chain(ends).collect());
     Said { words, decider: Some(decider), agents }
 }

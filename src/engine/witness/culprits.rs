@@ -70,10 +70,24 @@ impl<'s> Search<'s> {
 
     /// What some numbers are in this state.
     pub(in crate::engine) fn values(&self, nums: &[Num]) -> Vec<f64> {
-        let code = Code::compile(&self.prepared.program.scenario, &[], nums);
+        self.read(&[], nums).signals.iter().map(|lanes| lanes.0[0]).collect()
+    }
+
+    fn read(&self, atoms: &[Bool], nums: &[Num]) -> Readings {
         let mut readings = Readings::default();
-        code.run(&self.prepared.program, self.state, &mut readings);
-        readings.signals.iter().map(|lanes| lanes.0[0]).collect()
+        Code::compile(self.scenario(), atoms, nums).run(&self.prepared.program, self.state, &mut readings);
+        readings
+    }
+
+    /// The scenario.
+    pub(in crate::engine) fn scenario(&self) -> &'s Scenario {
+        &self.prepared.program.scenario
+    }
+
+    /// The name of an agent in this state.
+    pub(in crate::engine) fn name_of(&self, id: AgentId) -> Option<String> {
+        self.scenario().agents.get(id.0 as usize)?;
+        Some(self.state.name_of(self.scenario(), id, 0))
     }
 
     /// Whether nobody was found.
@@ -82,9 +96,8 @@ impl<'s> Search<'s> {
     }
 
     /// The first few who were found.
-    pub(in crate::engine) fn named(mut self) -> Vec<AgentId> {
-        self.found.truncate(NAMED);
-        self.found
+    pub(in crate::engine) fn named(&self) -> &[AgentId] {
+        &self.found[..NAMED.min(self.found.len())]
     }
 
     /// Whether a condition of this state holds.
@@ -94,11 +107,7 @@ impl<'s> Search<'s> {
 
     /// Which of some conditions hold: asked at once, so that who is near whom is sought once.
     fn which(&self, atoms: &[Bool]) -> Vec<bool> {
-        let scenario: &Scenario = &self.prepared.program.scenario;
-        let code = Code::compile(scenario, atoms, &[]);
-        let mut readings = Readings::default();
-        code.run(&self.prepared.program, self.state, &mut readings);
-        readings.atoms.iter().map(|mask| mask.has(0)).collect()
+        self.read(atoms, &[]).atoms.iter().map(|mask| mask.has(0)).collect()
     }
 
     /// The members of a list of whom a condition has a truth value, the first few, with what it is of each.
@@ -129,8 +138,7 @@ impl<'s> Search<'s> {
         text: &str,
         mentions: impl FnOnce(&mut dyn FnMut(AgentId)),
     ) {
-        let prepared = self.prepared;
-        let agents = &prepared.program.scenario.agents;
+        let agents = &self.scenario().agents;
         mentions(&mut |id| {
             let hidden = |name: &str| name.ends_with(']') && !text.contains(name);
             if self.found.len() < NAMED && agents.get(id.0 as usize).is_some_and(|a| hidden(&a.name)) {
@@ -224,7 +232,7 @@ impl<'s> Search<'s> {
                 let id = *id;
                 self.name(id);
                 if truth {
-                    let all = (0..self.prepared.program.scenario.agents.len() as u32).map(AgentId);
+                    let all = (0..self.scenario().agents.len() as u32).map(AgentId);
                     let others: Vec<AgentId> = all.filter(|other| *other != id).collect();
                     let touches = |other| Bool::Touching(Who::Agent(id), Who::Agent(other));
                     for (other, _) in self.those(&others, true, touches) {

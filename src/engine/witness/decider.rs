@@ -27,13 +27,9 @@ pub struct Decider {
 }
 
 /// What decided, of the agents that were found; none where nobody was.
-pub(in crate::engine) fn decider(
-    search: &Search<'_>,
-    scenario: &Scenario,
-    name: impl Fn(AgentId) -> Option<String>,
-) -> Option<Decider> {
-    let id = *search.found().first()?;
-    let agent = name(id)?;
+pub(in crate::engine) fn decider(search: &Search<'_>) -> Option<Decider> {
+    let (id, scenario) = (*search.found().first()?, search.scenario());
+    let agent = search.name_of(id)?;
     let place = place_of(search, id)?;
     let sides = search.compared();
     // A comparison with the present time says no more than when it was made: `done(a)`.
@@ -46,14 +42,11 @@ pub(in crate::engine) fn decider(
     let is_gap = sides.is_some_and(|(a, b)| is_gap(a) || is_gap(b));
     let other = match search.found() {
         [_, other] if is_gap && !search.is_member() => Some(*other),
-        _ => sides.and_then(|(a, b)| nearest(search, scenario, a).or_else(|| nearest(search, scenario, b))),
+        _ => sides.and_then(|(a, b)| nearest(search, a).or_else(|| nearest(search, b))),
     };
     let is_between = is_gap && search.is_member();
-    let (value, unit, against) = match compared {
-        Some((value, unit, against)) => (Some(value), unit, against),
-        None => (None, String::new(), None),
-    };
-    let other = other.filter(|_| value.is_some()).and_then(name);
+    let (value, unit, against) = compared.map_or_else(Default::default, |(v, unit, a)| (Some(v), unit, a));
+    let other = other.filter(|_| value.is_some()).and_then(|id| search.name_of(id));
     Some(Decider { agent, place, value, unit, against, other, is_between })
 }
 
@@ -87,9 +80,9 @@ fn place_of(search: &Search<'_>, id: AgentId) -> Option<[f64; 2]> {
 }
 
 /// The agent that gives another one its clearance; none where that is a wall.
-fn nearest(search: &Search<'_>, scenario: &Scenario, num: &Num) -> Option<AgentId> {
+fn nearest(search: &Search<'_>, num: &Num) -> Option<AgentId> {
     let Num::Of(Field::Separation(Separation::Clearance), Who::Agent(id)) = num else { return None };
-    let others = (0..scenario.agents.len() as u32).map(AgentId).filter(|other| other != id);
+    let others = (0..search.scenario().agents.len() as u32).map(AgentId).filter(|other| other != id);
     let others: Vec<AgentId> = others.filter(|other| search.is_there(*other)).collect();
     let radius = |id| Box::new(Num::Of(Field::Radius, Who::Agent(id)));
     let gap = |other: &AgentId| {

@@ -156,11 +156,11 @@ pub(in crate::engine) fn copies(
 }
 
 /// Each of some names once, in the order of their mention.
-pub(in crate::engine) fn each(names: Vec<String>) -> Vec<String> {
-    let mut kept: Vec<String> = Vec::new();
-    for name in names {
-        if !kept.contains(&name) {
-            kept.push(name);
+pub(in crate::engine) fn each<T: PartialEq>(all: Vec<T>) -> Vec<T> {
+    let mut kept = Vec::new();
+    for one in all {
+        if !kept.contains(&one) {
+            kept.push(one);
         }
     }
     kept

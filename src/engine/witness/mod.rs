@@ -16,11 +16,12 @@ use crate::engine::call::Call;
 use crate::engine::outcome::{Shows, Witness};
 use crate::engine::sampling::tally::Tally;
 use crate::engine::trials::prepared::PreparedWorld;
-use crate::engine::witness::blame::Said;
+use crate::engine::witness::blame::{Explained, Said};
 use crate::engine::witness::checkpoints::Checkpoints;
 use crate::kernel::{Address, Run};
 use crate::logic::{Root, Sought};
 use crate::trials::budget::Budget;
+use crate::trials::cell::Item;
 use crate::trials::group::ColumnGroup;
 use crate::trials::observer::Observer;
 
@@ -39,18 +40,31 @@ fn named(picks: [(Shows, Option<u64>); 2]) -> Vec<(Shows, u64)> {
     picks.into_iter().filter_map(|(shows, index)| Some((shows, index?))).collect()
 }
 
-/// The witnesses of a column: `picks` names the trials, and what they are witnesses of.
-pub(in crate::engine) fn find(
+/// What is asked of the trials that are shown.
+#[derive(Clone, Copy)]
+pub(in crate::engine) struct Inspected<'s> {
+    pub(in crate::engine) prepared: &'s PreparedWorld,
+    pub(in crate::engine) column: usize,
+    /// The option of moves that is followed, if one is.
+    pub(in crate::engine) advice: Option<(usize, usize)>,
+    /// Values of swept and `under` parameters.
+    pub(in crate::engine) settings: &'s [(String, String)],
+    /// The unit of a metric.
+    pub(in crate::engine) unit: &'s str,
+}
+
+/// The command that shows a trial.
+pub(in crate::engine) fn command(
+    call: &Call<'_>,
     prepared: &PreparedWorld,
-    column: usize,
-    advice: Option<(usize, usize)>,
-    picks: &[(Shows, u64)],
-    (call, budget): (&Call<'_>, &Budget),
     settings: &[(String, String)],
-    unit: &str,
-) -> Vec<Witness> {
-    let one = |pick: &(Shows, u64)| witness(prepared, column, advice, *pick, (call, budget), settings, unit);
-    picks.iter().filter_map(one).collect()
+    item: Item,
+) -> String {
+    let command = call.line.simulate(settings, call.seed, item.index);
+    match label(prepared, item.advice) {
+        Some(label) => format!("{command} --move '{label}'"),
+        None => command,
+    }
 }
 
 /// The name of a suggested move, as `smc simulate` takes it.
@@ -58,22 +72,16 @@ pub(in crate::engine) fn label(prepared: &PreparedWorld, advice: Option<(usize, 
     prepared.program.scenario.move_name(advice?)
 }
 
-/// Runs one trial again and says what decided it; `dimension` is the unit of a metric. None where the time is over.
-fn witness(
-    prepared: &PreparedWorld,
-    column: usize,
-    advice: Option<(usize, usize)>,
+/// Runs a trial again and says what decided it. `None` where the time is over.
+pub(in crate::engine) fn witness(
+    inspected: Inspected<'_>,
     (shows, trial): (Shows, u64),
     (call, budget): (&Call<'_>, &Budget),
-    settings: &[(String, String)],
-    dimension: &str,
 ) -> Option<Witness> {
+    let Inspected { prepared, column, advice, settings, unit: dimension } = inspected;
     let program = &prepared.program;
     let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
-    let mut command = call.line.simulate(settings, call.seed, trial);
-    if let Some(label) = label(prepared, advice) {
-        command.push_str(&format!(" --move '{label}'"));
-    }
+    let command = command(call, prepared, settings, Item { advice, index: trial });
     let (what, decider, agents) = Default::default();
     let blank = Witness { shows, trial, value: None, time: 0.0, unit, what, decider, agents, command };
     if program.scenario.clock.is_jumps() {
@@ -136,29 +144,23 @@ fn witness(
         Some(run.state().clone())
     };
     let now = Tick(run.state().ticks[0]);
+    let explain = |look: &dyn Fn(&Explained<'_>) -> (Option<Tick>, Said)| {
+        record.explain(prepared, budget, &state_at, look).unwrap_or_default()
+    };
     let (value, at, said) = match (prepared.columns[column], observer) {
-        (Root::Formula(_), Observer::Formula(monitor)) if record.is_full() => {
-            (None, Tick(monitor.decided_at()[0]), Said::default())
-        }
-        (Root::Metric(_), Observer::Metric(monitor)) if record.is_full() => {
-            (Some(monitor.value().0[0]), Tick(monitor.decided_at()[0]), Said::default())
-        }
         (Root::Formula(root), Observer::Formula(monitor)) => {
-            let said = blame::truth(prepared, root, (&record, budget), state_at);
+            let (_, said) = explain(&|trial| (None, trial.truth(root)));
             (None, Tick(monitor.decided_at()[0]), said)
         }
         (Root::Robustness(root, _), _) => {
             let value = observer.reading(0).value();
-            if record.is_full() {
-                return Some(Witness { value, time: program.scenario.clock.seconds(now), ..blank });
-            }
-            let (at, said) = blame::margin(prepared, root, (value, dimension), (&record, budget), state_at);
+            let (at, said) = explain(&|trial| trial.margin(root, value, dimension));
             (value, at.unwrap_or(now), said)
         }
         (Root::Metric(root), Observer::Metric(monitor)) => {
             // The monitor may know the value before the last state of a window.
             let value = monitor.value().0[0];
-            let (at, said) = blame::number(prepared, root, (value, dimension), (&record, budget), state_at);
+            let (at, said) = explain(&|trial| trial.number(root, value, dimension));
             let said = Said { decider: None, ..said };
             (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), said)
         }
