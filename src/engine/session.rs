@@ -2,7 +2,7 @@
 
 use crate::compile::study::{Ask, Query, Study};
 use crate::engine::answer::every;
-use crate::engine::answer::{Answers, Running, Sampling, Turn};
+use crate::engine::answer::{Answers, Sampling, Turn};
 use crate::engine::call::Call;
 use crate::engine::fault::{Fault, MOST_VALUES};
 use crate::engine::flaw::Flaw;
@@ -13,6 +13,7 @@ use crate::engine::sampling::estimate::EstimateSampling;
 use crate::engine::sampling::forecast::PilotStatistics;
 use crate::engine::sampling::procedure::Procedure;
 use crate::engine::sampling::rank::{RankSampling, RankSetup};
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::splitting::Question;
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{CallForecast, Forecast, Watch};
@@ -24,6 +25,7 @@ use crate::stats::spec::Make;
 use crate::stats::splitting;
 use crate::trials::budget::{Budget, DEFAULT_TRIALS};
 use crate::trials::cell::Series;
+use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 
 /// A query gets no larger part of the time than one of so many for its first trial.
@@ -49,7 +51,7 @@ pub fn run(
     }
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
-    let mut levels = Levels::default();
+    let levels = RefCell::new(Levels::default());
     if budget.has_deadline() {
         // A question about a rare event cannot be paused: it gets its share when the others had theirs.
         groups.sort_by_key(|group| group.is_whole());
@@ -61,8 +63,10 @@ pub fn run(
         // Those that are open share the time that is left; what one of them leaves goes to the others, in further turns.
         let parts = ((waiting.len() + 1) / times).max(1);
         let share = budget.share(parts);
-        let running = Running { executor, levels: &mut levels, share: &share, watch };
-        match session.turn(&mut group, running)? {
+        // Outcomes that are not there are missing for one group: it ends, and the others go on.
+        let budget = if executor.is_stored() { &share } else { budget };
+        let resources = Resources { executor, levels: &levels, budget, share: &share, watch };
+        match session.turn(&mut group, resources)? {
             Turn::Over(found, broken) => {
                 for (k, result) in found {
                     results[k] = Some(result);
@@ -345,10 +349,8 @@ impl<'a> Session<'a> {
     }
 
     /// Runs a group for its share of the time.
-    fn turn<'q>(&self, group: &mut Group<'q>, running: Running<'_>) -> Result<Turn<'q>, Fault> {
-        // Outcomes that are not there are missing for one group: it ends, and the others go on.
-        let budget = if running.executor.is_stored() { running.share } else { self.budget };
-        match group.run(&Answers { call: self.call, budget }, running) {
+    fn turn<'q>(&self, group: &mut Group<'q>, resources: Resources<'_>) -> Result<Turn<'q>, Fault> {
+        match group.run(&Answers { call: self.call, budget: resources.budget }, resources) {
             Err(fault @ Fault::Model(_)) => Ok(Turn::Over(Vec::new(), Some(fault))),
             turn => turn,
         }

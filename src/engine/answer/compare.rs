@@ -1,30 +1,17 @@
 //! Results of comparisons.
 
-use super::{Answers, First, MAX_TRIALS, Running, Sampling, Turn, between, says_something, unit};
+use super::{Answers, First, MAX_TRIALS, Sampling, Turn, between, says_something, unit};
 use super::{method, tables, words};
 use crate::compile::study::Ask;
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Kind, QueryResult};
 use crate::engine::sampling::compare::{CompareSampling, Gap};
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::tally::Tally;
-use crate::engine::sampling::watch::Forecast;
-use crate::engine::trials::executor::Executor;
-use crate::trials::budget::Budget;
 use crate::trials::cell::Item;
 impl<'q> Sampling<'q> for CompareSampling<'q> {
-    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
-        Ok(vec![self.run_pilot(executor, budget)?])
-    }
-
-    fn is_unread(&self) -> bool {
-        self.tallies[0].counts.trials == 0
-    }
-
-    fn run(&mut self, answers: &Answers<'_>, running: Running<'_>) -> Result<Turn<'q>, Fault> {
-        let Running { executor, share, watch, .. } = running;
-        let Some(gap) = self.sample(executor, (answers.budget, share), watch)? else {
-            return Ok(Turn::Paused);
-        };
+    fn run(&mut self, answers: &Answers<'_>, resources: Resources<'_>) -> Result<Turn<'q>, Fault> {
+        let Some(gap) = self.sample(resources)? else { return Ok(Turn::Paused) };
         Ok(Turn::Over(vec![(self.place, answers.compare(self, gap)?)], None))
     }
 }
@@ -32,11 +19,12 @@ impl<'q> Sampling<'q> for CompareSampling<'q> {
 impl Answers<'_> {
     /// The result of a comparison that has stopped.
     fn compare(&self, compare: &CompareSampling<'_>, gap: Gap) -> Result<QueryResult, Fault> {
-        let query = compare.query();
+        let query = compare.query;
         let Ask::Compare { first, second, settings, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let worlds = [compare.prepared(0), compare.prepared(1)];
+        let [first_job, second_job] = &compare.jobs;
+        let worlds = [first_job.prepared, second_job.prepared];
         let prepared = worlds[0];
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);

@@ -1,32 +1,21 @@
 //! Results of checks and estimates.
 
-use super::{Answered, Answers, MAX_TRIALS, Running, Sampling, Turn, between, says_something, unit, was_cut};
+use super::{Answered, Answers, MAX_TRIALS, Sampling, Turn, between, says_something, unit, was_cut};
 use super::{method, words};
 use crate::compile::study::{Ask, MeasureKind};
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Certificate, Certified, Kind, QueryResult, Stop, Verdict};
 use crate::engine::sampling::entry::EstimateEntry;
 use crate::engine::sampling::estimate::{Advance, EstimateSampling};
-use crate::engine::sampling::watch::Forecast;
-use crate::engine::trials::executor::Executor;
+use crate::engine::sampling::resources::Resources;
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::engine::witness::{self, Inspected};
 use crate::logic::Root;
 use crate::stats::{Coverage, Decision, Statement};
-use crate::trials::budget::Budget;
 impl<'q> Sampling<'q> for EstimateSampling<'q> {
-    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
-        self.run_pilot(executor, budget)
-    }
-
-    fn is_unread(&self) -> bool {
-        self.entries.iter().all(|entry| entry.tally.counts.trials == 0)
-    }
-
-    fn run(&mut self, answers: &Answers<'_>, running: Running<'_>) -> Result<Turn<'q>, Fault> {
-        let Running { executor, levels, share, watch } = running;
+    fn run(&mut self, answers: &Answers<'_>, resources: Resources<'_>) -> Result<Turn<'q>, Fault> {
         let mut broken = None;
-        match self.advance((executor, levels), (answers.budget, share), watch)? {
+        match self.advance(resources)? {
             Advance::Stopped => {}
             Advance::Paused => return Ok(Turn::Paused),
             Advance::Faulty(found) => {
@@ -48,7 +37,7 @@ impl<'q> Sampling<'q> for EstimateSampling<'q> {
 impl Answers<'_> {
     /// The results of all queries of an estimate.
     fn entries(&self, estimate: &mut EstimateSampling<'_>) -> Result<Answered, Fault> {
-        let prepared = estimate.prepared();
+        let prepared = estimate.job.prepared;
         let all = std::mem::take(&mut estimate.entries).into_iter();
         all.map(|entry| Ok((entry.place, self.entry(prepared, entry)?))).collect()
     }

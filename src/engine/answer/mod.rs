@@ -14,13 +14,12 @@ use crate::compile::study::{Ask, Measure, MeasureKind, Query};
 use crate::engine::call::Call;
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{AskedQuery, Certificate, Certified, Counts, Kind, QueryResult, Shows, Witness};
+use crate::engine::sampling::pilot::Piloted;
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::tally::Tally;
-use crate::engine::sampling::watch::{Forecast, Watch};
-use crate::engine::trials::executor::Executor;
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::engine::witness::{self, Inspected, cause};
 use crate::logic::{Root, Sought};
-use crate::stats::Levels;
 use crate::trials::budget::{Budget, DEFAULT_TRIALS};
 use crate::trials::cell::Item;
 
@@ -58,31 +57,10 @@ pub(in crate::engine) enum Turn<'q> {
     Apart(Box<dyn Sampling<'q> + 'q>),
 }
 
-/// Who runs trials in a turn, and for how long.
-pub(in crate::engine) struct Running<'a> {
-    pub(in crate::engine) executor: &'a dyn Executor,
-    /// The levels that were proven so far.
-    pub(in crate::engine) levels: &'a mut Levels,
-    /// The share of the time.
-    pub(in crate::engine) share: &'a Budget,
-    pub(in crate::engine) watch: &'a dyn Watch,
-}
-
 /// Queries that are answered together, on their way.
-pub(in crate::engine) trait Sampling<'q> {
-    /// Runs the first trials, and forecasts from them what each query is likely to take.
-    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault>;
-
-    /// Whether no trial was read yet.
-    fn is_unread(&self) -> bool;
-
-    /// Whether it gets its share of the time at once, because it cannot go on later.
-    fn is_whole(&self) -> bool {
-        false
-    }
-
+pub(in crate::engine) trait Sampling<'q>: Piloted {
     /// Runs for a share of the time.
-    fn run(&mut self, answers: &Answers<'_>, running: Running<'_>) -> Result<Turn<'q>, Fault>;
+    fn run(&mut self, answers: &Answers<'_>, resources: Resources<'_>) -> Result<Turn<'q>, Fault>;
 
     /// The results of those that have stopped; the others are left out.
     fn decided(&mut self, _: &Answers<'_>) -> Result<Answered, Fault> {

@@ -1,33 +1,20 @@
 //! Results of rankings.
 
-use super::{Answers, First, Running, Sampling, Turn, unit, unit_of, was_cut};
+use super::{Answers, First, Sampling, Turn, unit, unit_of, was_cut};
 use super::{every, method, tables, words};
 use crate::compile::study::{Ask, Beside, Measure, MeasureKind, Query, RankOption, Role};
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Certificate, Certified, Evidence, Kind, QueryResult, Ranking, Status};
 use crate::engine::sampling::rank::{RankOutcome, RankSampling};
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::tally::Tally;
-use crate::engine::sampling::watch::Forecast;
-use crate::engine::trials::executor::Executor;
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::engine::witness::{self, Inspected};
 use crate::model::Move;
 use crate::stats::Coverage;
-use crate::trials::budget::Budget;
 impl<'q> Sampling<'q> for RankSampling<'q> {
-    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
-        Ok(vec![self.run_pilot(executor, budget)?])
-    }
-
-    fn is_unread(&self) -> bool {
-        self.tallies.iter().all(|tally| tally.counts.trials == 0)
-    }
-
-    fn run(&mut self, answers: &Answers<'_>, running: Running<'_>) -> Result<Turn<'q>, Fault> {
-        let Running { executor, share, watch, .. } = running;
-        let Some(ranked) = self.sample(executor, (answers.budget, share), watch)? else {
-            return Ok(Turn::Paused);
-        };
+    fn run(&mut self, answers: &Answers<'_>, resources: Resources<'_>) -> Result<Turn<'q>, Fault> {
+        let Some(ranked) = self.sample(resources)? else { return Ok(Turn::Paused) };
         Ok(Turn::Over(vec![(self.place, answers.rank(self, ranked)?)], None))
     }
 }
@@ -82,12 +69,11 @@ fn front(
 impl Answers<'_> {
     /// The result of a ranking that has stopped.
     fn rank(&self, rank: &RankSampling<'_>, ranked: RankOutcome) -> Result<QueryResult, Fault> {
-        let query = rank.query();
+        let (query, setup) = (rank.query, &rank.setup);
         let Ask::Rank { options, measure, ranking, models, beside } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
-        let setup = rank.setup();
         let is_front = beside.iter().any(|one| matches!(one.role, Role::Aim { .. }));
         let mut result = self.blank(query, if is_front { Kind::Pareto } else { Kind::Rank });
         result.method = method::of(&query.ask, None);

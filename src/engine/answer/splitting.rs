@@ -1,53 +1,32 @@
 //! What splitting found, in words: the estimate is labelled for what it is, the sound bound stands beside it,
 //! and where plain trials contradict it there is no estimate.
 
-use super::{Answers, Running, Sampling, Turn, method, words};
+use super::{Answers, Sampling, Turn, method, words};
 use crate::base::math;
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Certificate, Certified, Kind, QueryResult, Rare, Stop};
 use crate::engine::sampling::procedure;
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::splitting::{DISAGREEMENT, Found, Question, run};
-use crate::engine::sampling::watch::{Forecast, Watch};
-use crate::engine::trials::executor::Executor;
 use crate::engine::witness;
 use crate::stats::splitting::Spread;
 use crate::syntax::codes::Code;
-use crate::trials::budget::Budget;
 
 /// Code of a disagreement, for `smc explain`.
 const DISAGREES: Code = Code::E0802;
 
 impl<'q> Sampling<'q> for Question<'q> {
-    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
-        Ok(vec![self.run_pilot(executor, budget)?])
-    }
-
-    fn is_unread(&self) -> bool {
-        true
-    }
-
-    fn is_whole(&self) -> bool {
-        true
-    }
-
-    fn run(&mut self, answers: &Answers<'_>, running: Running<'_>) -> Result<Turn<'q>, Fault> {
-        let Running { executor, share, watch, .. } = running;
-        Ok(Turn::Over(vec![(self.place, answers.split(self, executor, share, watch)?)], None))
+    fn run(&mut self, answers: &Answers<'_>, resources: Resources<'_>) -> Result<Turn<'q>, Fault> {
+        Ok(Turn::Over(vec![(self.place, answers.split(self, resources)?)], None))
     }
 }
 
 impl Answers<'_> {
     /// Estimates a probability by splitting.
-    fn split(
-        &self,
-        question: &Question<'_>,
-        executor: &dyn Executor,
-        share: &Budget,
-        watch: &dyn Watch,
-    ) -> Result<QueryResult, Fault> {
+    fn split(&self, question: &Question<'_>, resources: Resources<'_>) -> Result<QueryResult, Fault> {
         let started = self.budget.elapsed();
         let Question { query, prepared, column, rule, .. } = *question;
-        let found = run(question, executor, share, watch)?;
+        let found = run(question, resources)?;
         let mut result = self.blank(query, Kind::Estimate);
         result.method = method::of(&query.ask, None);
         result.stopped_by = found.stop;

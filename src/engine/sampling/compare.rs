@@ -6,10 +6,11 @@ use crate::engine::fault::Fault;
 use crate::engine::outcome::{Evidence, Interval, Snapshot, Stop, next_after};
 use crate::engine::sampling::estimate::LARGEST_ROUND;
 use crate::engine::sampling::forecast::{self, PilotStatistics};
-use crate::engine::sampling::pilot::Pilot;
+use crate::engine::sampling::pilot::{Pilot, Piloted};
 use crate::engine::sampling::procedure::{of_mean, outcome, value};
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::tally::Tally;
-use crate::engine::sampling::watch::{Forecast, Likely, Watch};
+use crate::engine::sampling::watch::{Forecast, Likely};
 use crate::engine::trials::executor::{Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::stats::{self, Bounded, Difference, Mean};
@@ -75,8 +76,8 @@ fn clipped(cell: &Cell, (low, high): (f64, f64)) -> Option<f64> {
 pub(in crate::engine) struct CompareSampling<'s> {
     /// Its place among the queries that are asked.
     pub(in crate::engine) place: usize,
-    query: &'s Query,
-    jobs: [Job<'s>; 2],
+    pub(in crate::engine) query: &'s Query,
+    pub(in crate::engine) jobs: [Job<'s>; 2],
     procedure: Differences,
     range: Option<(f64, f64)>,
     within: Option<f64>,
@@ -92,6 +93,33 @@ pub(in crate::engine) struct CompareSampling<'s> {
     evidence: Option<Vec<Snapshot>>,
     /// Seconds that it has taken so far.
     pub(in crate::engine) spent: f64,
+}
+
+impl Piloted for CompareSampling<'_> {
+    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
+        let size = Pilot::size(executor.width(&self.jobs[0]) as u64)
+            .min(self.planned(budget))
+            .min(budget.max_trials);
+        let one = |job: &Job<'_>| Pilot::run(job, Item::run(0, size), executor, budget);
+        let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
+        let mut statistics = PilotStatistics::default();
+        for (a, b) in sides[0].seen().zip(sides[1].seen()) {
+            if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
+                statistics.add(a - b);
+            }
+        }
+        let seconds: f64 =
+            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].prepared.most_steps())).sum();
+        let pairs = self.likely(&statistics).map(|n| n.min(budget.max_trials));
+        self.ahead = sides.iter().all(Pilot::is_complete).then_some(sides);
+        self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
+        let trials = pairs.map(|n| 2 * n);
+        Ok(vec![Forecast { seconds: pairs.likely as f64 * seconds, ..Forecast::of(self.query, trials, 0.0) }])
+    }
+
+    fn is_unread(&self) -> bool {
+        self.tallies[0].counts.trials == 0
+    }
 }
 
 impl<'s> CompareSampling<'s> {
@@ -146,44 +174,8 @@ impl<'s> CompareSampling<'s> {
         })
     }
 
-    /// The query.
-    pub(in crate::engine) fn query(&self) -> &'s Query {
-        self.query
-    }
-
-    /// The prepared world of a side.
-    pub(in crate::engine) fn prepared(&self, side: usize) -> &'s PreparedWorld {
-        self.jobs[side].prepared
-    }
-
     fn planned(&self, budget: &Budget) -> u64 {
         if self.within.is_none() { methods::PLANNED_TRIALS } else { budget.max_trials }
-    }
-
-    /// Runs the first pairs, and forecasts from them what the comparison is likely to take.
-    pub(in crate::engine) fn run_pilot(
-        &mut self,
-        executor: &dyn Executor,
-        budget: &Budget,
-    ) -> Result<Forecast, Fault> {
-        let size = Pilot::size(executor.width(&self.jobs[0]) as u64)
-            .min(self.planned(budget))
-            .min(budget.max_trials);
-        let one = |job: &Job<'_>| Pilot::run(job, Item::run(0, size), executor, budget);
-        let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
-        let mut statistics = PilotStatistics::default();
-        for (a, b) in sides[0].seen().zip(sides[1].seen()) {
-            if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
-                statistics.add(a - b);
-            }
-        }
-        let seconds: f64 =
-            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].prepared.most_steps())).sum();
-        let pairs = self.likely(&statistics).map(|n| n.min(budget.max_trials));
-        self.ahead = sides.iter().all(Pilot::is_complete).then_some(sides);
-        self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
-        let trials = pairs.map(|n| 2 * n);
-        Ok(Forecast { seconds: pairs.likely as f64 * seconds, ..Forecast::of(self.query, trials, 0.0) })
     }
 
     /// Pairs that it is likely to take; `statistics` is that of their differences.
@@ -208,12 +200,8 @@ impl<'s> CompareSampling<'s> {
 
     /// Runs until the interval is narrow enough, or the pairs are spent; `None` if its share of the time is over before,
     /// and the time of the call is not.
-    pub(in crate::engine) fn sample(
-        &mut self,
-        executor: &dyn Executor,
-        (budget, share): (&Budget, &Budget),
-        watch: &dyn Watch,
-    ) -> Result<Option<Gap>, Fault> {
+    pub(in crate::engine) fn sample(&mut self, resources: Resources<'_>) -> Result<Option<Gap>, Fault> {
+        let Resources { executor, budget, share, watch, .. } = resources;
         let planned = self.planned(budget);
         let most = planned.min(budget.max_trials);
         let (started, spent) = (budget.elapsed(), self.spent);

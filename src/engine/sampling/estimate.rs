@@ -9,9 +9,10 @@ use crate::engine::fault::Fault;
 use crate::engine::outcome::Stop;
 use crate::engine::sampling::entry::EstimateEntry;
 use crate::engine::sampling::forecast::{self, FIRST, PilotStatistics};
-use crate::engine::sampling::pilot::{self, Pilot};
+use crate::engine::sampling::pilot::{self, Pilot, Piloted};
 use crate::engine::sampling::procedure::Procedure;
-use crate::engine::sampling::watch::{Forecast, Likely, Watch};
+use crate::engine::sampling::resources::Resources;
+use crate::engine::sampling::watch::{Forecast, Likely};
 use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::stats::Levels;
@@ -28,7 +29,7 @@ pub(in crate::engine) const LARGEST_ROUND: u64 = 16_384;
 
 /// Checks and estimates of one prepared world on their way.
 pub(in crate::engine) struct EstimateSampling<'q> {
-    job: Job<'q>,
+    pub(in crate::engine) job: Job<'q>,
     /// The queries.
     pub(in crate::engine) entries: Vec<EstimateEntry<'q>>,
     ahead: Option<Pilot>,
@@ -58,40 +59,8 @@ pub(in crate::engine) struct FaultyTrial {
     pub(in crate::engine) fault: Fault,
 }
 
-impl<'q> EstimateSampling<'q> {
-    /// An estimate of some entries about one prepared world.
-    pub(in crate::engine) fn new(
-        prepared: &'q PreparedWorld,
-        entries: Vec<EstimateEntry<'q>>,
-        seed: u64,
-    ) -> Self {
-        let job = Job::new(prepared, columns(entries.iter()), seed);
-        Self { job, entries, ahead: None, next: 0, spent: 0.0 }
-    }
-
-    /// Leaves the entries about some columns to an estimate of their own, which goes on where this one is.
-    pub(in crate::engine) fn part(&mut self, slow: &[usize]) -> Self {
-        let (slow, rest) =
-            std::mem::take(&mut self.entries).into_iter().partition(|i| slow.contains(&i.column));
-        self.entries = rest;
-        Self {
-            next: self.next,
-            spent: self.spent,
-            ..Self::new(self.job.prepared, slow, self.job.series.seed)
-        }
-    }
-
-    /// The prepared world.
-    pub(in crate::engine) fn prepared(&self) -> &'q PreparedWorld {
-        self.job.prepared
-    }
-
-    /// Runs the first trials, and forecasts from them what each entry is likely to take.
-    pub(in crate::engine) fn run_pilot(
-        &mut self,
-        executor: &dyn Executor,
-        budget: &Budget,
-    ) -> Result<Vec<Forecast>, Fault> {
+impl Piloted for EstimateSampling<'_> {
+    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
         // As many on every machine, whatever a round would be.
         let size = Pilot::size(width).min(most(&self.entries, 0, budget).max(1)).min(budget.max_trials);
@@ -119,20 +88,44 @@ impl<'q> EstimateSampling<'q> {
         Ok(forecasts)
     }
 
+    fn is_unread(&self) -> bool {
+        self.entries.iter().all(|entry| entry.tally.counts.trials == 0)
+    }
+}
+
+impl<'q> EstimateSampling<'q> {
+    /// An estimate of some entries about one prepared world.
+    pub(in crate::engine) fn new(
+        prepared: &'q PreparedWorld,
+        entries: Vec<EstimateEntry<'q>>,
+        seed: u64,
+    ) -> Self {
+        let job = Job::new(prepared, columns(entries.iter()), seed);
+        Self { job, entries, ahead: None, next: 0, spent: 0.0 }
+    }
+
+    /// Leaves the entries about some columns to an estimate of their own, which goes on where this one is.
+    pub(in crate::engine) fn part(&mut self, slow: &[usize]) -> Self {
+        let (slow, rest) =
+            std::mem::take(&mut self.entries).into_iter().partition(|i| slow.contains(&i.column));
+        self.entries = rest;
+        Self {
+            next: self.next,
+            spent: self.spent,
+            ..Self::new(self.job.prepared, slow, self.job.series.seed)
+        }
+    }
+
     /// Runs until each entry has stopped, its share of the time is over, or up to a trial in which the model is wrong.
-    pub(in crate::engine) fn advance(
-        &mut self,
-        (executor, levels): (&dyn Executor, &mut Levels),
-        (budget, share): (&Budget, &Budget),
-        watch: &dyn Watch,
-    ) -> Result<Advance, Fault> {
+    pub(in crate::engine) fn advance(&mut self, resources: Resources<'_>) -> Result<Advance, Fault> {
+        let budget = resources.budget;
         // The trials that were run ahead are its own.
         self.spent += self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         let started = budget.elapsed() - self.spent;
         if budget.max_trials == 0 {
             self.entries.iter_mut().for_each(|entry| entry.stop = Some(Stop::Cap));
         }
-        let mut advance = self.rounds((executor, started), u64::MAX, (budget, share), watch)?;
+        let mut advance = self.rounds(started, u64::MAX, resources)?;
         // Proofs come when nobody reads on without one, so that none of them keeps others from their trials.
         for k in 0..self.entries.len() {
             // Who stops before the trial in which the model is wrong does not know of it.
@@ -144,7 +137,7 @@ impl<'q> EstimateSampling<'q> {
             if !self.entries[k].waits {
                 continue;
             }
-            match self.go_on((executor, started), (k, end), levels, (budget, share), watch)? {
+            match self.go_on(started, (k, end), resources)? {
                 Advance::Stopped => {}
                 Advance::Paused if matches!(advance, Advance::Faulty(_)) => {}
                 other => advance = other,
@@ -162,16 +155,15 @@ impl<'q> EstimateSampling<'q> {
     /// Proves the level for which an entry waits, and reads on, up to a trial.
     fn go_on(
         &mut self,
-        (executor, started): (&dyn Executor, f64),
+        started: f64,
         (k, end): (usize, u64),
-        levels: &mut Levels,
-        (budget, share): (&Budget, &Budget),
-        watch: &dyn Watch,
+        resources: Resources<'_>,
     ) -> Result<Advance, Fault> {
+        let Resources { budget, levels, share, .. } = resources;
         let entry = &mut self.entries[k];
         let read = entry.tally.counts.trials;
         let capped = read >= budget.max_trials;
-        let settled = prove(&entry.procedure, levels, share)?;
+        let settled = prove(&entry.procedure, &mut levels.borrow_mut(), share)?;
         if settled.is_none() && !budget.must_stop() {
             return Ok(Advance::Paused);
         }
@@ -191,7 +183,7 @@ impl<'q> EstimateSampling<'q> {
             return Ok(Advance::Stopped);
         }
         self.next = read;
-        let advance = self.rounds((executor, started), end, (budget, share), watch)?;
+        let advance = self.rounds(started, end, resources)?;
         let entry = &mut self.entries[k];
         let unread = entry.tally.counts.trials == read;
         match (&advance, entry.stop) {
@@ -208,13 +200,8 @@ impl<'q> EstimateSampling<'q> {
     }
 
     /// Rounds over trials up to one, until nobody reads on.
-    fn rounds(
-        &mut self,
-        (executor, started): (&dyn Executor, f64),
-        end: u64,
-        (budget, share): (&Budget, &Budget),
-        watch: &dyn Watch,
-    ) -> Result<Advance, Fault> {
+    fn rounds(&mut self, started: f64, end: u64, resources: Resources<'_>) -> Result<Advance, Fault> {
+        let Resources { executor, budget, share, watch, .. } = resources;
         let mut items = Vec::new();
         // A round that takes longer than this without a trial to its name is of trials that are too long for some column.
         let patience = share.seconds_left().map(|seconds| 0.5 * seconds);

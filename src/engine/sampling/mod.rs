@@ -9,6 +9,7 @@ pub(in crate::engine) mod least;
 pub(in crate::engine) mod pilot;
 pub(in crate::engine) mod procedure;
 pub(in crate::engine) mod rank;
+pub(in crate::engine) mod resources;
 pub(in crate::engine) mod splitting;
 pub(in crate::engine) mod tally;
 pub(in crate::engine) mod watch;

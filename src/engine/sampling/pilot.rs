@@ -3,6 +3,7 @@
 //! are not run twice unless they were too slow to finish in the pilot.
 
 use crate::engine::fault::Fault;
+use crate::engine::sampling::watch::Forecast;
 use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Cell, Item};
@@ -38,6 +39,20 @@ pub(in crate::engine) fn timed(
             return Ok(taken / count as f64);
         }
         count *= 8;
+    }
+}
+
+/// Queries that are sampled together and begin with a pilot.
+pub(in crate::engine) trait Piloted {
+    /// Runs the first trials, and forecasts from them what each query is likely to take.
+    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault>;
+
+    /// Whether no trial was read yet.
+    fn is_unread(&self) -> bool;
+
+    /// Whether it gets its share of the time at once, because it cannot go on later.
+    fn is_whole(&self) -> bool {
+        false
     }
 }
 

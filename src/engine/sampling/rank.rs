@@ -9,10 +9,11 @@ use crate::engine::fault::Fault;
 use crate::engine::outcome::{Standing, Stop, next_after};
 use crate::engine::sampling::contest::contest;
 use crate::engine::sampling::forecast::{self, PilotStatistics};
-use crate::engine::sampling::pilot::Pilot;
+use crate::engine::sampling::pilot::{Pilot, Piloted};
 use crate::engine::sampling::procedure::{self, of_mean, score, sequence, value};
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::tally::Tally;
-use crate::engine::sampling::watch::{Forecast, Likely, Watch};
+use crate::engine::sampling::watch::{Forecast, Likely};
 use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::stats::ranking::{Choice, Contest, Ranking, Share};
@@ -72,8 +73,8 @@ impl RankSetup<'_> {
 pub(in crate::engine) struct RankSampling<'s> {
     /// Its place among the queries that are asked.
     pub(in crate::engine) place: usize,
-    query: &'s Query,
-    setup: RankSetup<'s>,
+    pub(in crate::engine) query: &'s Query,
+    pub(in crate::engine) setup: RankSetup<'s>,
     /// Jobs, each of all options that are read from one column of one world.
     jobs: Vec<Job<'s>>,
     /// The job of each option.
@@ -108,6 +109,53 @@ struct Round {
     of: Vec<(usize, u64)>,
     places: Vec<Vec<usize>>,
     cut: bool,
+}
+
+impl Piloted for RankSampling<'_> {
+    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
+        let round = self.round(budget.max_trials);
+        let steps = || self.jobs.iter().map(|job| job.steps.load(Ordering::Relaxed)).sum();
+        let pilot = Pilot::of(round.items, &steps, budget, |items, ahead| {
+            self.run_round(&round.of, items, executor, ahead)
+        })?;
+        let arms = self.setup.options.len();
+        let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let mut statistics = vec![PilotStatistics::default(); arms];
+        let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
+        for (share, places) in round.shares.iter().zip(&round.places) {
+            for row in places.iter().map(|&place| pilot.cells.row(place)) {
+                let mut one = PilotStatistics::default();
+                let place = self.places(share.arm)[0];
+                if let Some(cell) = row.map(|row| &row[place]) {
+                    statistics[share.arm].read(cell, range);
+                    one.read(cell, range);
+                }
+                readings[share.arm].push(one.only());
+            }
+        }
+        let leader =
+            (0..arms).max_by(|a, b| statistics[*a].mean().total_cmp(&statistics[*b].mean())).unwrap_or(0);
+        let differences: Vec<PilotStatistics> = (0..arms)
+            .map(|arm| {
+                let mut statistics = PilotStatistics::default();
+                let pairs = readings[leader].iter().zip(&readings[arm]);
+                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| statistics.add(a - b));
+                statistics
+            })
+            .collect();
+        let most = (arms as u64).saturating_mul(budget.max_trials);
+        let trials = forecast::rank(&statistics, &differences, self.scale(), self.setup.rule);
+        let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
+        let most_steps = self.setup.worlds.iter().map(|prepared| prepared.most_steps()).max().flatten();
+        let seconds = pilot.seconds_per_trial(most_steps);
+        self.ahead = pilot.is_complete().then_some(pilot);
+        self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
+        Ok(vec![Forecast::of(self.query, trials, seconds)])
+    }
+
+    fn is_unread(&self) -> bool {
+        self.tallies.iter().all(|tally| tally.counts.trials == 0)
+    }
 }
 
 impl<'s> RankSampling<'s> {
@@ -154,16 +202,6 @@ impl<'s> RankSampling<'s> {
             evidence,
             spent: 0.0,
         })
-    }
-
-    /// The query.
-    pub(in crate::engine) fn query(&self) -> &'s Query {
-        self.query
-    }
-
-    /// The setup.
-    pub(in crate::engine) fn setup(&self) -> &RankSetup<'s> {
-        &self.setup
     }
 
     /// The places of what is asked of an option among the columns of its job.
@@ -246,60 +284,13 @@ impl<'s> RankSampling<'s> {
         }
     }
 
-    /// Runs the first round, and forecasts from it what the ranking is likely to take.
-    pub(in crate::engine) fn run_pilot(
-        &mut self,
-        executor: &dyn Executor,
-        budget: &Budget,
-    ) -> Result<Forecast, Fault> {
-        let round = self.round(budget.max_trials);
-        let steps = || self.jobs.iter().map(|job| job.steps.load(Ordering::Relaxed)).sum();
-        let pilot = Pilot::of(round.items, &steps, budget, |items, ahead| {
-            self.run_round(&round.of, items, executor, ahead)
-        })?;
-        let arms = self.setup.options.len();
-        let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-        let mut statistics = vec![PilotStatistics::default(); arms];
-        let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
-        for (share, places) in round.shares.iter().zip(&round.places) {
-            for row in places.iter().map(|&place| pilot.cells.row(place)) {
-                let mut one = PilotStatistics::default();
-                let place = self.places(share.arm)[0];
-                if let Some(cell) = row.map(|row| &row[place]) {
-                    statistics[share.arm].read(cell, range);
-                    one.read(cell, range);
-                }
-                readings[share.arm].push(one.only());
-            }
-        }
-        let leader =
-            (0..arms).max_by(|a, b| statistics[*a].mean().total_cmp(&statistics[*b].mean())).unwrap_or(0);
-        let differences: Vec<PilotStatistics> = (0..arms)
-            .map(|arm| {
-                let mut statistics = PilotStatistics::default();
-                let pairs = readings[leader].iter().zip(&readings[arm]);
-                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| statistics.add(a - b));
-                statistics
-            })
-            .collect();
-        let most = (arms as u64).saturating_mul(budget.max_trials);
-        let trials = forecast::rank(&statistics, &differences, self.scale(), self.setup.rule);
-        let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
-        let most_steps = self.setup.worlds.iter().map(|prepared| prepared.most_steps()).max().flatten();
-        let seconds = pilot.seconds_per_trial(most_steps);
-        self.ahead = pilot.is_complete().then_some(pilot);
-        self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
-        Ok(Forecast::of(self.query, trials, seconds))
-    }
-
     /// Runs until the ranking is certified, or the budget is spent; `None` if its share of the time is over before, and
     /// the time of the call is not.
     pub(in crate::engine) fn sample(
         &mut self,
-        executor: &dyn Executor,
-        (budget, share): (&Budget, &Budget),
-        watch: &dyn Watch,
+        resources: Resources<'_>,
     ) -> Result<Option<RankOutcome>, Fault> {
+        let Resources { executor, budget, share, watch, .. } = resources;
         let arms = self.setup.options.len();
         // Each option's interval is one of as many that hold jointly.
         let delta = self.setup.rule.1 / arms as f64;

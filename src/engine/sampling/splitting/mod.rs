@@ -12,17 +12,20 @@ use crate::base::random::TrialKey;
 use crate::compile::study::Query;
 use crate::engine::fault::Fault;
 use crate::engine::outcome::Stop;
-use crate::engine::sampling::pilot::Pilot;
+use crate::engine::sampling::pilot::{Pilot, Piloted};
+use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::tally::Tally;
-use crate::engine::sampling::watch::{Forecast, Likely, Nobody, Watch};
+use crate::engine::sampling::watch::{Forecast, Likely, Nobody};
 use crate::engine::trials::executor::{Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
+use crate::engine::trials::trial::fault;
 use crate::stats::splitting::{Rule, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Item, Reading};
 use batches::Batches;
 use path::Path;
+use std::cell::RefCell;
 
 /// Error of the interval of plain trials that an estimate must lie in: small, for the comparison is made once
 /// in every call.
@@ -92,13 +95,10 @@ impl<'s> Question<'s> {
     ) -> Self {
         Self { place, query, prepared, column, level, rule, seed }
     }
+}
 
-    /// Runs a few plain trials, and forecasts from them what all is likely to take.
-    pub(in crate::engine) fn run_pilot(
-        &self,
-        executor: &dyn Executor,
-        budget: &Budget,
-    ) -> Result<Forecast, Fault> {
+impl Piloted for Question<'_> {
+    fn pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Vec<Forecast>, Fault> {
         let job = Job::new(self.prepared, vec![self.column], self.seed);
         let width = executor.width(&job) as u64;
         let few = width.min(self.rule.plain).min(budget.max_trials);
@@ -110,12 +110,15 @@ impl<'s> Question<'s> {
         let trials = paths.map(|times| {
             self.rule.plain.saturating_add(started.saturating_mul(times)).min(budget.max_trials)
         });
-        Ok(Forecast {
-            query: self.query.text.clone(),
-            settings: self.query.settings.clone(),
-            trials,
-            seconds: trials.likely as f64 * seconds,
-        })
+        Ok(vec![Forecast::of(self.query, trials, seconds)])
+    }
+
+    fn is_unread(&self) -> bool {
+        true
+    }
+
+    fn is_whole(&self) -> bool {
+        true
     }
 }
 
@@ -155,14 +158,9 @@ impl Running {
 }
 
 /// Answers a question.
-pub(in crate::engine) fn run(
-    question: &Question<'_>,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
-) -> Result<Found, Fault> {
+pub(in crate::engine) fn run(question: &Question<'_>, resources: Resources<'_>) -> Result<Found, Fault> {
     let rule = question.rule;
-    let (plain, stop) = plainly(question, executor, budget, watch)?;
+    let (plain, stop) = plainly(question, resources)?;
     // Unresolved trials count as the event where that is the worse reading.
     let counts = plain.counts;
     let read = |successes| Counts { successes, failures: counts.trials - successes };
@@ -182,7 +180,7 @@ pub(in crate::engine) fn run(
     let batches = Batches::new(question.prepared, [question.column, question.level]);
     let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
         runs(question, lost_reaches, found, &mut |runs, found| {
-            advance(&batches, runs, (question.query, question.seed), found, executor, budget, watch)
+            advance(&batches, runs, (question.query, question.seed), found, resources)
         })
     };
     if let Some(low) = reading(false, &mut found)? {
@@ -227,12 +225,8 @@ fn runs(
 }
 
 /// The plain trials; why they ended early, if they did.
-fn plainly(
-    question: &Question<'_>,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
-) -> Result<(Tally, Option<Stop>), Fault> {
+fn plainly(question: &Question<'_>, resources: Resources<'_>) -> Result<(Tally, Option<Stop>), Fault> {
+    let Resources { executor, share: budget, watch, .. } = resources;
     let job = Job::new(question.prepared, vec![question.column], question.seed);
     let mut tally = Tally::default();
     let planned = question.rule.plain;
@@ -253,11 +247,7 @@ fn plainly(
                 return Ok((tally, Some(budget.stopped_by())));
             };
             if row[0].reading == Reading::Faulty {
-                return Err(crate::engine::trials::trial::fault(
-                    question.prepared,
-                    *item,
-                    question.seed.into(),
-                ));
+                return Err(fault(question.prepared, *item, question.seed.into()));
             }
             tally.add(item.index, &row[0], None);
         }
@@ -303,10 +293,9 @@ fn advance(
     runs: &[SplitRun],
     (query, seed): (&Query, u64),
     found: &mut Found,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
+    resources: Resources<'_>,
 ) -> Result<Option<Vec<RunRecord>>, Fault> {
+    let Resources { executor, share: budget, .. } = resources;
     // All of them are requested before one that is not there ends the question.
     let stored: Vec<_> = runs.iter().map(|run| executor.record(run)).collect();
     let stored: Option<Vec<_>> = stored.into_iter().collect();
@@ -323,7 +312,7 @@ fn advance(
         records.iter().for_each(count);
         return Ok(Some(records));
     }
-    let made = make(batches, runs, (&query.text, seed), found, executor, budget, watch)?;
+    let made = make(batches, runs, (&query.text, seed), found, resources)?;
     runs.iter().zip(made.iter().flatten()).for_each(|(run, record)| executor.made(run, record));
     Ok(made)
 }
@@ -334,9 +323,7 @@ fn make(
     runs: &[SplitRun],
     (query, seed): (&str, u64),
     found: &mut Found,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
+    Resources { executor, share: budget, watch, .. }: Resources<'_>,
 ) -> Result<Option<Vec<RunRecord>>, Fault> {
     let mut running = runs.iter().map(|run| Running::new(run, seed)).collect::<Result<Vec<_>, _>>()?;
     loop {
@@ -382,7 +369,9 @@ pub(in crate::engine) fn record(
     let batches = Batches::new(prepared, run.columns);
     let interval = clopper_pearson::interval(Counts::default(), DISAGREEMENT);
     let mut found = Found::new(Tally::default(), 1.0, interval);
-    match make(&batches, std::slice::from_ref(run), ("", seed), &mut found, executor, budget, &Nobody) {
+    let levels = RefCell::default();
+    let resources = Resources { executor, levels: &levels, budget, share: budget, watch: &Nobody };
+    match make(&batches, std::slice::from_ref(run), ("", seed), &mut found, resources) {
         Err(Fault::Model(_)) => Ok(None),
         made => Ok(made?.and_then(|mut records| records.pop())),
     }
