@@ -50,7 +50,7 @@ pub struct Bin {
 }
 
 /// Quality of predictions.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BrierScore {
     /// Number of predictions.
     pub count: u64,
@@ -151,20 +151,9 @@ fn scored<'a>(predictions: impl Iterator<Item = (&'a Prediction, u32)>) -> Optio
     for one in &all {
         histogram[((10.0 * one.probability) as usize).min(9)] += u64::from(one.times);
     }
-    let mut score = BrierScore {
-        count,
-        base_rate,
-        brier,
-        reliability: 0.0,
-        resolution: 0.0,
-        uncertainty,
-        within_bin_variance: 0.0,
-        within_bin_covariance: 0.0,
-        calibration_error: 0.0,
-        skill: (uncertainty > 0.0).then(|| 1.0 - brier / uncertainty),
-        bins: Vec::new(),
-        histogram,
-    };
+    let skill = (uncertainty > 0.0).then(|| 1.0 - brier / uncertainty);
+    let mut score =
+        BrierScore { count, base_rate, brier, uncertainty, skill, histogram, ..BrierScore::default() };
     for members in bins(&all) {
         let (Some(first), Some(last)) = (members.first(), members.last()) else { continue };
         let size = total(members);

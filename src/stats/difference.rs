@@ -7,7 +7,7 @@
 
 use super::bets::{geometric, log_mean};
 use super::invalid::{Invalid, probability, range};
-use super::{Coverage, Interval, Outcome};
+use super::{Coverage, Interval, Outcome, bisection};
 use crate::base::math;
 
 /// Bets of the mixture, as shares of the largest allowed, in geometric steps.
@@ -75,19 +75,7 @@ fn lower_end(pairs: Pairs, delta: f64) -> f64 {
     let bets = bets();
     let threshold = math::ln(2.0 / delta) + 1e-9;
     // The evidence falls in m, and at the mean difference it is at most 1.
-    let (mut low, mut high) = (-1.0, pairs.mean());
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if log_against(pairs, middle, &bets) >= threshold {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+    bisection::halved(-1.0, pairs.mean(), 60, |m| log_against(pairs, m, &bets) >= threshold).0
 }
 
 /// The interval for P(first) - P(second) that holds at all numbers of pairs at once.

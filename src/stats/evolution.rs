@@ -39,8 +39,7 @@ impl Evolution {
         let raw: Vec<f64> =
             (1..=best).map(|k| math::ln(0.5 * (population + 1) as f64) - math::ln(k as f64)).collect();
         let total: f64 = raw.iter().sum();
-        let unit: Vec<Vec<f64>> =
-            (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+        let unit = identity(n);
         Self {
             seed,
             generation: 0,
@@ -146,13 +145,16 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+fn identity(n: usize) -> Vec<Vec<f64>> {
+    (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect()
+}
+
 /// The eigenvalues of a symmetric matrix, and its eigenvectors as columns, by cyclic Jacobi rotations (Golub and Van Loan,
 /// Matrix Computations, section 8.5).
 fn symmetric(matrix: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = matrix.len();
     let mut a = matrix.to_vec();
-    let mut axes: Vec<Vec<f64>> =
-        (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    let mut axes = identity(n);
     for _ in 0..SWEEPS {
         let mut rotated = false;
         for p in 0..n {

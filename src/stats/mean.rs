@@ -11,7 +11,7 @@ use crate::base::math;
 const SEQUENCE_SHARE: f64 = 0.8;
 
 /// The confidence sequence of one reading, on [0, 1].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 struct Sequence {
     /// ln(2 / error).
     ln_error: f64,
@@ -34,13 +34,8 @@ impl Sequence {
         Self {
             ln_error: math::ln(2.0 / error),
             aim: aim.map(|n| n as f64),
-            n: 0,
-            sum: 0.0,
             ends: (f64::INFINITY, f64::NEG_INFINITY),
-            squares: 0.0,
-            bets: 0.0,
-            weighted: 0.0,
-            variance: 0.0,
+            ..Self::default()
         }
     }
 

@@ -26,6 +26,7 @@
 //! | a statistic of persons, each with many instants | [`Bootstrap`] |
 
 mod bets;
+mod bisection;
 pub mod bootstrap;
 mod bounded;
 pub mod brier;

@@ -72,12 +72,7 @@ impl Running {
     pub fn interval(&self) -> Interval {
         match self {
             Self::Share { counts, unresolved, delta } => {
-                let reading = |more: (u64, u64)| {
-                    let counts =
-                        Counts { successes: counts.successes + more.0, failures: counts.failures + more.1 };
-                    sequence::interval(counts, *delta)
-                };
-                reading((0, *unresolved)).hull(reading((*unresolved, 0)))
+                sequence::interval_with(*counts, *unresolved, *delta)
             }
             Self::Number(number) => number.interval(),
         }

@@ -1,7 +1,7 @@
 //! The Beta-mixture confidence sequence with the prior of Krichevsky and Trofimov (1981): an interval that
 //! holds P at all numbers of trials at once, and so at any deadline (Robbins 1970; Ville 1939).
 
-use super::{Counts, Coverage, Interval};
+use super::{Counts, Coverage, Interval, bisection};
 use crate::base::math;
 use crate::base::special::ln_beta;
 
@@ -35,21 +35,7 @@ pub fn interval(counts: Counts, delta: f64) -> Interval {
     let inside = |m: f64| inside(counts, ln_mixture, ln_delta, m);
     let share = counts.share();
     // Bisection outward of the share of successes, towards either end.
-    let bound = |end: f64| {
-        let (mut out, mut inner) = (end, share);
-        for _ in 0..100 {
-            let middle = 0.5 * (out + inner);
-            if middle == out || middle == inner {
-                break;
-            }
-            if inside(middle) {
-                inner = middle;
-            } else {
-                out = middle;
-            }
-        }
-        out
-    };
+    let bound = |end: f64| bisection::halved(share, end, 100, inside).1;
     let none = counts.trials() == 0;
     Interval {
         low: if none || counts.successes == 0 { 0.0 } else { bound(0.0) },
@@ -57,6 +43,13 @@ pub fn interval(counts: Counts, delta: f64) -> Interval {
         error: delta,
         coverage: Coverage::TimeUniform,
     }
+}
+
+/// The same with unresolved trials, which may be successes or failures.
+pub fn interval_with(counts: Counts, unresolved: u64, delta: f64) -> Interval {
+    let Counts { successes, failures } = counts;
+    let fewest = interval(Counts { successes, failures: failures + unresolved }, delta);
+    fewest.hull(interval(Counts { successes: successes + unresolved, failures }, delta))
 }
 
 #[cfg(test)]

@@ -242,35 +242,14 @@ impl Tail {
                 left.iter().filter(|(_, most)| *most - u > 1e-9).map(|(left, most)| left / (most - u));
             log_mean(&capitals(ratios)) - ROUNDING * left.len() as f64 >= threshold
         };
-        let (mut low, mut high) = (self.mean_of_largest(&of), 1.0);
-        if !is_refuted(high) {
-            return 1.0;
-        }
-        while high - low > PRECISION {
-            let middle = 0.5 * (low + high);
-            if is_refuted(middle) {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        high
+        if is_refuted(1.0) { narrowed(1.0, self.mean_of_largest(&of), is_refuted) } else { 1.0 }
     }
 
     /// The largest u that is refuted from below; 0 if there is none.
     fn lower_end(&self, of: impl Fn(&(f64, f64, Option<f64>)) -> f64) -> f64 {
         let sorted = self.sorted(of);
         let most = sorted.last().copied().unwrap_or(0.0);
-        let (mut low, mut high) = (0.0, most);
-        while high - low > PRECISION {
-            let middle = 0.5 * (low + high);
-            if self.is_refuted_below(&sorted, middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
+        narrowed(0.0, most, |u| self.is_refuted_below(&sorted, u))
     }
 
     /// Whether the capital against u reaches the threshold for all c at once. A part of all c whose bound is too small is
@@ -313,6 +292,19 @@ impl Tail {
         let least: [f64; BETS] = std::array::from_fn(|k| math::at_most(one[k], other[k]));
         log_mean(&least)
     }
+}
+
+/// A number at which a condition holds, so close to one at which it does not, by bisection.
+fn narrowed(mut yes: f64, mut no: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    while (no - yes).abs() > PRECISION {
+        let middle = 0.5 * (yes + no);
+        if holds(middle) {
+            yes = middle;
+        } else {
+            no = middle;
+        }
+    }
+    yes
 }
 
 /// The logarithms of the capital of each bet on ratios whose mean is at most 1 if what is bet against is true.

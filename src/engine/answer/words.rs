@@ -47,10 +47,7 @@ pub(in crate::engine) fn brief(value: f64, unit: &str) -> String {
     if value == 0.0 || !value.is_finite() {
         return quantity(value, unit);
     }
-    let mut scale = 1.0;
-    while value.abs() * scale < 1_000.0 && scale < 1e9 {
-        scale *= 10.0;
-    }
+    let scale = scale(value, 1_000.0, 1e9);
     quantity((value * scale).round() / scale, unit)
 }
 
@@ -61,10 +58,7 @@ pub(in crate::engine) fn ends(low: f64, high: f64, unit: &str) -> String {
         return format!("{} .. {}", quantity(low, unit), quantity(high, unit));
     }
     // Two digits of the width.
-    let mut scale = 1.0;
-    while width * scale < 10.0 && scale < LARGEST_SCALE {
-        scale *= 10.0;
-    }
+    let scale = scale(width, 10.0, LARGEST_SCALE);
     // All digits that are left are written: rounding them to the nearest once more could make the interval narrower.
     let end = |scaled: f64, given: f64| {
         let said = as_it_is(if scaled.is_finite() { scaled / scale } else { given });
@@ -75,10 +69,7 @@ pub(in crate::engine) fn ends(low: f64, high: f64, unit: &str) -> String {
 
 /// A bound with four digits, rounded upward or downward.
 pub(in crate::engine) fn rounded(value: f64, upward: bool, unit: &str) -> String {
-    let mut scale = 1.0;
-    while value != 0.0 && value.abs() * scale < 1000.0 && scale < LARGEST_SCALE {
-        scale *= 10.0;
-    }
+    let scale = if value == 0.0 { 1.0 } else { scale(value, 1_000.0, LARGEST_SCALE) };
     let scaled = value * scale;
     quantity(if upward { scaled.ceil() } else { scaled.floor() } / scale, unit)
 }
@@ -93,14 +84,20 @@ pub(in crate::engine) fn at_least(value: f64) -> f64 {
     three_digits(value, f64::floor)
 }
 
+/// The power of ten, from 1 up to `most`, that brings the size of a number to `least`.
+fn scale(value: f64, least: f64, most: f64) -> f64 {
+    let mut scale = 1.0;
+    while value.abs() * scale < least && scale < most {
+        scale *= 10.0;
+    }
+    scale
+}
+
 fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return value;
     }
-    let mut scale = 1.0;
-    while value * scale < 100.0 && scale < LARGEST_SCALE {
-        scale *= 10.0;
-    }
+    let scale = scale(value, 100.0, LARGEST_SCALE);
     // A number that has so few digits already stays as it is; and so does one that is smaller than any scale.
     let scaled = value * scale;
     if scaled < 100.0 || (scaled - scaled.round()).abs() < 1e-9 { value } else { round(scaled) / scale }

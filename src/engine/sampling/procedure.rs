@@ -440,10 +440,11 @@ pub(in crate::engine) fn around(estimate: f64, interval: stats::Interval) -> Int
 
 /// The confidence sequence of a probability, over both readings of unresolved trials.
 pub(in crate::engine) fn sequence(counts: crate::engine::outcome::Counts, error: f64) -> stats::Interval {
-    let reading = |successes: u64| {
-        stats::sequence::interval(stats::Counts { successes, failures: counts.trials - successes }, error)
+    let resolved = stats::Counts {
+        successes: counts.successes,
+        failures: counts.trials - counts.successes - counts.unresolved,
     };
-    reading(counts.successes).hull(reading(counts.successes + counts.unresolved))
+    stats::sequence::interval_with(resolved, counts.unresolved, error)
 }
 
 /// The estimate of a mean, in the middle between both readings of unresolved trials, and its interval.

@@ -144,10 +144,7 @@ impl Tally {
     pub(in crate::engine) fn total(tallies: &[Self]) -> Self {
         let mut sum = Self::default();
         for tally in tallies {
-            sum.counts.trials += tally.counts.trials;
-            sum.counts.successes += tally.counts.successes;
-            sum.counts.failures += tally.counts.failures;
-            sum.counts.unresolved += tally.counts.unresolved;
+            sum.counts = sum.counts.and(tally.counts);
             sum.steps += tally.steps;
             sum.clipped += tally.clipped;
             sum.shrunk.trials += tally.shrunk.trials;

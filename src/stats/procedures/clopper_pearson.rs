@@ -3,7 +3,7 @@
 
 use crate::base::special::{beta_quantile, beta_tails, beta_upper_quantile};
 use crate::stats::invalid::{Invalid, probability, range};
-use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential, bisection};
 
 /// Lower end at one-sided level `tail`: P(at least this many successes) is `tail` there. 0 without successes.
 pub fn lower(counts: Counts, tail: f64) -> f64 {
@@ -59,15 +59,7 @@ pub fn size(epsilon: f64, delta: f64) -> u64 {
     while !enough(high) && high < 1 << 50 {
         high *= 2;
     }
-    let mut low = high / 2;
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if enough(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    high = bisection::first(high / 2, high, enough);
     // Odd and even numbers differ a little: go back while all from there on suffice.
     while high > 2 && enough(high - 1) {
         high -= 1;

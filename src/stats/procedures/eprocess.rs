@@ -8,7 +8,9 @@ use crate::base::math;
 use crate::base::special::{beta_tails, ln_beta};
 use crate::stats::invalid::{Invalid, probability, region};
 use crate::stats::sprt::SLACK;
-use crate::stats::{Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test, Weight, Weights};
+use crate::stats::{
+    Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test, Weight, Weights, bisection,
+};
 
 /// Beyond this no count is exact as a double; thresholds closer to 0 or 1 than that never decide.
 const MOST_TRIALS: u64 = 1 << 53;
@@ -81,16 +83,7 @@ impl OneSided {
                 return low;
             }
         }
-        let mut high = low + step;
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            if reached(middle) {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        high
+        bisection::first(low, low + step, reached)
     }
 
     /// Whether the threshold is reached now. `log` is evaluated only where it could be.

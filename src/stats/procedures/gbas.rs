@@ -8,7 +8,7 @@ use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::special::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile};
 use crate::stats::invalid::{Invalid, probability, range};
-use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential, bisection, clopper_pearson};
 
 /// The share of the error kept for the interval at the cap.
 const CAP_SHARE: f64 = 0.1;
@@ -22,16 +22,7 @@ pub fn size(epsilon: f64, delta: f64) -> u64 {
     while miss(high) > delta && high < 1e12 {
         high *= 2.0;
     }
-    let mut low = 1.0;
-    while high - low > 1.0 {
-        let middle = (0.5 * (low + high)).floor();
-        if miss(middle) > delta {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high as u64
+    bisection::first(1, high as u64, |k| miss(k as f64) <= delta)
 }
 
 /// Estimates P to a relative error.

@@ -4,7 +4,7 @@
 use crate::base::special::{beta_tails, normal_quantile};
 use crate::stats::invalid::{Invalid, probability, range, region};
 use crate::stats::sprt::region_statement;
-use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test};
+use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, bisection};
 
 /// P >= theta + indifference against P <= theta - indifference by a fixed number of trials.
 ///
@@ -43,16 +43,7 @@ fn at_least(n: u64, c: u64, p: f64) -> f64 {
 
 /// The largest c with P(Bin(n, p) < c) <= alpha.
 fn critical(n: u64, p: f64, alpha: f64) -> u64 {
-    let (mut low, mut high) = (0, n + 1);
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if below(n, middle, p) <= alpha {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+    bisection::first(0, n + 1, |c| below(n, c, p) > alpha) - 1
 }
 
 impl Plan {
@@ -79,16 +70,7 @@ impl Plan {
         while !feasible_randomised(most) && most < 1 << 40 {
             most *= 2;
         }
-        let mut least = 0;
-        while most - least > 1 {
-            let middle = least + (most - least) / 2;
-            if feasible_randomised(middle) {
-                most = middle;
-            } else {
-                least = middle;
-            }
-        }
-        let mut size = most;
+        let mut size = bisection::first(0, most, feasible_randomised);
         let mut needed = critical(size, high, alpha);
         while at_least(size, needed, low) > beta {
             size += 1;

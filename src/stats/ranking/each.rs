@@ -88,12 +88,10 @@ impl Each {
             let (low, high) = self.shares(arm);
             return (low - 0.5 * self.epsilon, high + 0.5 * self.epsilon);
         }
-        let (counts, unresolved) = self.arms[arm];
-        let reading = |unresolved: u64| {
-            let (successes, failures) = (counts.successes + unresolved, counts.failures - unresolved);
-            sequence::interval(Counts { successes, failures }, self.delta)
-        };
-        (reading(0).low, reading(unresolved).high)
+        let (Counts { successes, failures }, unresolved) = self.arms[arm];
+        let resolved = Counts { successes, failures: failures - unresolved };
+        let interval = sequence::interval_with(resolved, unresolved, self.delta);
+        (interval.low, interval.high)
     }
 }
 

@@ -5,6 +5,8 @@
 //! side of Waudby-Smith and Ramdas 2024, which needs no upper end of the range). The bound is the largest m for which
 //! it is. Nothing is assumed but that the estimates are independent and unbiased.
 
+use crate::stats::bisection;
+
 /// The shares among which the capital is spread at the beginning.
 const SHARES: [f64; 4] = [0.1, 0.3, 0.6, 0.9];
 
@@ -17,18 +19,11 @@ fn capital(estimates: &[f64], m: f64) -> f64 {
 /// A number that the mean is not below, with an error of at most `delta`; 0 if there is no evidence.
 pub fn floor(estimates: &[f64], delta: f64) -> f64 {
     let most = estimates.iter().copied().fold(0.0, |x: f64, y| if y > x { y } else { x });
-    let (mut low, mut high) = (0.0, most);
-    if high <= 0.0 || estimates.iter().any(|z| !(*z >= 0.0 && z.is_finite())) {
+    if most <= 0.0 || estimates.iter().any(|z| !(*z >= 0.0 && z.is_finite())) {
         return 0.0;
     }
     // Above the largest estimate all capital is lost; it falls as m rises.
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if capital(estimates, middle) >= 1.0 / delta { low = middle } else { high = middle }
-    }
+    let (low, _) = bisection::halved(0.0, most, 200, |m| capital(estimates, m) >= 1.0 / delta);
     // On the safe side of rounding.
     low * (1.0 - 1e-9)
 }
