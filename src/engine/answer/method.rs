@@ -3,7 +3,6 @@
 use crate::compile::methods::PLANNED_TRIALS;
 use crate::compile::study::{Ask, Beside, Measure, MeasureKind, Role};
 use crate::engine::outcome::Method;
-use crate::engine::sampling::contest::is_by_intervals;
 use crate::engine::sampling::procedure::Procedure;
 use crate::stats::procedures::{PROBABILITY_WITHIN, TAIL_RUNNING};
 use crate::stats::splitting;
@@ -69,7 +68,7 @@ pub(in crate::engine) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method 
                 Some(Beside { role: Role::Constraint { .. }, .. }) => "constrained_betting",
                 Some(Beside { role: Role::Aim { .. }, .. }) => "pareto_betting",
                 None if *models > 1 => crate::engine::sampling::least::NAME,
-                None if is_by_intervals(&measure.kind) => TAIL_RUNNING.reported,
+                None if measure.kind.share().is_some() => TAIL_RUNNING.reported,
                 None => ranking.spec.reported,
             };
             (name, [values(ranking), word, ends(measure)].concat())

@@ -90,7 +90,7 @@ pub(in crate::engine) struct Answers<'a> {
 
 impl Answers<'_> {
     /// What is known of a query before its first trial.
-    pub(in crate::engine) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
+    fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
         let (low, high) = legal(&query.ask);
         let asked = AskedQuery {
@@ -106,7 +106,7 @@ impl Answers<'_> {
     }
 
     /// The call that stops at the same trial; `limit` is the option that counts them.
-    pub(in crate::engine) fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
+    fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
         let line = &self.call.line;
         let mut words = if query.point.is_empty() { line.check() } else { line.check_at(&query.point) };
         // In a ranking of which a round was cut, how many trials there are in all does not tell which.
@@ -117,19 +117,14 @@ impl Answers<'_> {
     }
 
     /// The witnesses of a column of a world, in which perhaps somebody was advised.
-    pub(in crate::engine) fn witnesses(&self, of: Inspected<'_>, picks: &[(Shows, u64)]) -> Vec<Witness> {
+    fn witnesses(&self, of: Inspected<'_>, picks: &[(Shows, u64)]) -> Vec<Witness> {
         let picks = if self.call.explains { picks } else { &[] };
         let calls = (self.call, self.budget);
         picks.iter().filter_map(|pick| witness::witness(of, *pick, calls)).collect()
     }
 
     /// Counts, and what they warn of.
-    pub(in crate::engine) fn tell(
-        result: &mut QueryResult,
-        prepared: &PreparedWorld,
-        tally: &Tally,
-        column: usize,
-    ) {
+    fn tell(result: &mut QueryResult, prepared: &PreparedWorld, tally: &Tally, column: usize) {
         result.consumed = tally.consumed();
         let Ok(implications) = prepared.implications(column) else { return };
         // Of a trial that is not resolved nobody knows what the rest of it would have been.
@@ -165,7 +160,7 @@ impl Answers<'_> {
 
     /// Says which bodies were made smaller in the first trial in which any was, and who had no way in the first in which
     /// anybody had none.
-    pub(in crate::engine) fn note_odd(&self, result: &mut QueryResult, tallies: &[(&PreparedWorld, &Tally)]) {
+    fn note_odd(&self, result: &mut QueryResult, tallies: &[(&PreparedWorld, &Tally)]) {
         let first = |of: &dyn Fn(&Tally) -> Option<u64>| {
             let mut found = tallies.iter().filter_map(|(prepared, tally)| Some((*prepared, of(tally)?)));
             found
@@ -181,13 +176,7 @@ impl Answers<'_> {
     }
 
     /// The same of a result of one world, in which nobody was advised.
-    pub(in crate::engine) fn lament_one(
-        &self,
-        result: &mut QueryResult,
-        prepared: &PreparedWorld,
-        tally: &Tally,
-        column: usize,
-    ) {
+    fn lament_one(&self, result: &mut QueryResult, prepared: &PreparedWorld, tally: &Tally, column: usize) {
         let settings = result.asked.settings.clone();
         let item = |index| Item { advice: None, index };
         let first = tally.first[2].map(|index| First { prepared, column, item: item(index), settings });
@@ -195,12 +184,7 @@ impl Answers<'_> {
     }
 
     /// Says how many trials are unresolved, why the first of them is, and how to look at it.
-    pub(in crate::engine) fn lament(
-        &self,
-        result: &mut QueryResult,
-        unresolved: u64,
-        first: Option<&First<'_>>,
-    ) {
+    fn lament(&self, result: &mut QueryResult, unresolved: u64, first: Option<&First<'_>>) {
         let counts = Counts { unresolved, ..result.consumed.counts };
         if unresolved == 0 {
             return;

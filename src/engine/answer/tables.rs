@@ -10,7 +10,7 @@ use crate::engine::sampling::rank::RankOutcome;
 use crate::stats;
 
 /// Both sides of a comparison and their difference, with intervals.
-pub(in crate::engine) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
+pub(super) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
     let side = |at: usize| {
         let counts = compare.sides[at].counts;
         let known = counts.trials > counts.unresolved;
@@ -66,7 +66,7 @@ fn also(ranked: &RankOutcome, option: usize, beside: &[Beside]) -> Vec<Also> {
 }
 
 /// The options of a ranking, the choice first, then by score; of a front its options first, then those that are open.
-pub(in crate::engine) fn ranked(
+pub(super) fn ranked(
     ranked: &RankOutcome,
     options: &[RankOption],
     (models, every): (usize, Option<&Every>),

@@ -1,6 +1,6 @@
 //! Which procedure of `stats` compares the options of a ranking.
 
-use crate::compile::study::{Beside, MeasureKind, Role};
+use crate::compile::study::{Beside, Role};
 use crate::engine::fault::Fault;
 use crate::engine::sampling::least::Least;
 use crate::engine::sampling::procedure::goal;
@@ -10,7 +10,7 @@ use crate::stats::ranking::{
 };
 
 /// The procedure that compares the options.
-pub(in crate::engine) fn contest(setup: &RankSetup<'_>) -> Result<Box<dyn Contest>, Fault> {
+pub(super) fn contest(setup: &RankSetup<'_>) -> Result<Box<dyn Contest>, Fault> {
     let (epsilon, delta, ranking) = setup.rule;
     let arms = setup.options.len();
     let deviations: Vec<f64> = setup.options.iter().map(|option| option.deviation).collect();
@@ -59,9 +59,4 @@ fn beside(
     } else {
         Box::new(Constrained::new(first, bounds, (epsilon, delta), WORD, deviations)?)
     })
-}
-
-/// Whether a kind of measure is compared by intervals alone.
-pub(in crate::engine) fn is_by_intervals(kind: &MeasureKind) -> bool {
-    kind.share().is_some()
 }

@@ -33,7 +33,7 @@ pub(in crate::engine) struct PilotStatistics {
 
 impl PilotStatistics {
     /// Adds a number.
-    pub(in crate::engine) fn add(&mut self, x: f64) {
+    pub(super) fn add(&mut self, x: f64) {
         if x.is_finite() {
             self.trials += 1.0;
             self.sum += x;
@@ -42,7 +42,7 @@ impl PilotStatistics {
     }
 
     /// Adds truth values, so many of them true.
-    pub(in crate::engine) fn count(&mut self, truths: u64, held: u64) {
+    pub(super) fn count(&mut self, truths: u64, held: u64) {
         self.truths += truths;
         self.held += held;
     }
@@ -56,7 +56,7 @@ impl PilotStatistics {
     }
 
     /// Adds what a cell reads, clipped to a range.
-    pub(in crate::engine) fn read(&mut self, cell: &Cell, (low, high): (f64, f64)) {
+    pub(super) fn read(&mut self, cell: &Cell, (low, high): (f64, f64)) {
         match cell.reading {
             Reading::Truth(held) => self.count(1, u64::from(held)),
             Reading::Value(value) => self.add(value.clamp(low, high)),
@@ -70,12 +70,12 @@ impl PilotStatistics {
     }
 
     /// The only number, if there is one.
-    pub(in crate::engine) fn only(&self) -> Option<f64> {
+    pub(super) fn only(&self) -> Option<f64> {
         (self.trials() > 0.0).then(|| self.mean())
     }
 
     /// The mean, 0 of no numbers.
-    pub(in crate::engine) fn mean(&self) -> f64 {
+    pub(super) fn mean(&self) -> f64 {
         if self.trials() > 0.0 { self.sum() / self.trials() } else { 0.0 }
     }
 
@@ -113,11 +113,7 @@ impl PilotStatistics {
 }
 
 /// Trials that a check or estimate takes: with what the first of them say, and with what the truth may be as well.
-pub(in crate::engine) fn entry(
-    ask: &Ask,
-    procedure: &Procedure,
-    statistics: &PilotStatistics,
-) -> Option<Likely> {
+pub(super) fn entry(ask: &Ask, procedure: &Procedure, statistics: &PilotStatistics) -> Option<Likely> {
     let limit = procedure.limit();
     let (measure, chosen, theta) = match ask {
         Ask::Check { measure, test, threshold, .. } => (measure, test, *threshold),
@@ -148,7 +144,7 @@ pub(in crate::engine) const FIRST: u64 = 256;
 
 /// Up to which trial outcomes are requested from elsewhere, where so many are read: as many as will surely be needed, or as the
 /// fewest that are likely to be, and at least a fifth more, so that of what comes less than a quarter is in vain.
-pub(in crate::engine) fn ahead(read: u64, likely: Option<Likely>) -> u64 {
+pub(super) fn ahead(read: u64, likely: Option<Likely>) -> u64 {
     let known = likely.filter(|likely| read >= FIRST || likely.least == likely.most);
     (read + read / 5).max(known.map_or(FIRST, |likely| likely.least))
 }
@@ -159,12 +155,7 @@ const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
 }
 
 /// Pairs that a comparison is likely to take; `statistics` is that of the differences.
-pub(in crate::engine) fn compare(
-    statistics: &PilotStatistics,
-    range: f64,
-    epsilon: f64,
-    delta: f64,
-) -> Likely {
+pub(super) fn compare(statistics: &PilotStatistics, range: f64, epsilon: f64, delta: f64) -> Likely {
     let least = 0.1 * range;
     let of = |guess: Guess| until_narrow(guess.variance, 2.0 * range, epsilon, delta);
     let likely = of(statistics.guess(least));
@@ -176,7 +167,7 @@ pub(in crate::engine) fn compare(
 
 /// Trials that a ranking is likely to take, of all options together; `statistics` are those of the options,
 /// `differences` those of each option to the one that leads, `scale` the range of the score.
-pub(in crate::engine) fn rank(
+pub(super) fn rank(
     statistics: &[PilotStatistics],
     differences: &[PilotStatistics],
     scale: f64,

@@ -24,7 +24,7 @@ pub(in crate::engine) const NAME: &str = "least_score";
 const GROWTH: u64 = 8;
 
 /// A race by least scores.
-pub(in crate::engine) struct Least {
+pub(super) struct Least {
     models: usize,
     epsilon: f64,
     scale: f64,
@@ -47,7 +47,7 @@ struct Score {
 
 impl Least {
     /// Of so many columns, with `models` to an option.
-    pub(in crate::engine) fn new(
+    pub(super) fn new(
         (columns, models): (usize, usize),
         (epsilon, delta): (f64, f64),
         goal: Goal,

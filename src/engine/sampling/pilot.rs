@@ -22,7 +22,7 @@ const SHORT: f64 = 0.01;
 const MOST_TIMED: u64 = 8192;
 
 /// Seconds a trial takes once workers are made, where a first run of so many was short.
-pub(in crate::engine) fn timed(
+pub(super) fn timed(
     job: &Job<'_>,
     (mut count, each): (u64, f64),
     executor: &dyn Executor,
@@ -75,7 +75,7 @@ impl Pilot {
     }
 
     /// Runs the items, for half a second at most.
-    pub(in crate::engine) fn run(
+    pub(super) fn run(
         job: &Job<'_>,
         items: Vec<Item>,
         executor: &dyn Executor,
@@ -86,7 +86,7 @@ impl Pilot {
     }
 
     /// The same of items that `run` runs; `steps` tells how many steps were made so far.
-    pub(in crate::engine) fn of(
+    pub(super) fn of(
         items: Vec<Item>,
         steps: &dyn Fn() -> u64,
         budget: &Budget,
@@ -99,13 +99,13 @@ impl Pilot {
     }
 
     /// Whether all of them finished.
-    pub(in crate::engine) fn is_complete(&self) -> bool {
+    pub(super) fn is_complete(&self) -> bool {
         self.cells.rows().all(|row| row.is_some())
     }
 
     /// The rows that a forecast is made from: the first 16 trials, or where these did not finish in time, the first 8, 4, 2
     /// or 1. What the clock lets through beyond these leaves no trace in the number of trials.
-    pub(in crate::engine) fn seen(&self) -> impl Iterator<Item = &[Cell]> {
+    pub(super) fn seen(&self) -> impl Iterator<Item = &[Cell]> {
         let whole = self.cells.rows().take_while(Option::is_some).count();
         let whole = whole.min(self.items.len());
         let seen = if whole == self.items.len() || whole >= SEEN {
@@ -123,7 +123,7 @@ impl Pilot {
 
     /// Seconds a trial takes, all threads at work. Where none finished, a trial takes all steps to the horizon; where
     /// that is not known, twice as many as were made so far.
-    pub(in crate::engine) fn seconds_per_trial(&self, horizon: Option<u64>) -> f64 {
+    pub(super) fn seconds_per_trial(&self, horizon: Option<u64>) -> f64 {
         let finished = self.rows().count();
         if finished == self.items.len() {
             return self.seconds / finished.max(1) as f64;

@@ -20,7 +20,7 @@ const MOST_KEPT: usize = 1 << 27;
 
 /// Truth values and numbers of the states of one trial, state by state.
 #[derive(Default)]
-pub(in crate::engine) struct Record {
+pub(super) struct Record {
     atoms: Vec<bool>,
     signals: Vec<f64>,
     /// Atoms and signals of a state.
@@ -31,7 +31,7 @@ pub(in crate::engine) struct Record {
 
 impl Record {
     /// Keeps what was read of lane 0, as long as there is room.
-    pub(in crate::engine) fn push(&mut self, readings: &Readings) {
+    pub(super) fn push(&mut self, readings: &Readings) {
         self.full |= self.atoms.len() + 8 * self.signals.len() > MOST_KEPT;
         if self.full {
             return;
@@ -43,7 +43,7 @@ impl Record {
     }
 
     /// Explains the trial by what was recorded of it; `None` where there was too much to record.
-    pub(in crate::engine) fn explain<T>(
+    pub(super) fn explain<T>(
         &self,
         prepared: &PreparedWorld,
         budget: &Budget,
@@ -71,13 +71,13 @@ impl Record {
 
 /// What decided.
 #[derive(Clone, Debug, Default)]
-pub(in crate::engine) struct Said {
+pub(super) struct Said {
     /// In words.
-    pub(in crate::engine) words: String,
+    pub(super) words: String,
     /// The agent and number that did.
-    pub(in crate::engine) decider: Option<Decider>,
+    pub(super) decider: Option<Decider>,
     /// All agents that are named, the first few of those who did.
-    pub(in crate::engine) agents: Vec<String>,
+    pub(super) agents: Vec<String>,
 }
 
 impl Said {
@@ -112,7 +112,7 @@ impl From<String> for Said {
 }
 
 /// A trial that is explained: what is recorded of it, and its states.
-pub(in crate::engine) struct Explained<'t> {
+pub(super) struct Explained<'t> {
     prepared: &'t PreparedWorld,
     recording: &'t Recording<'t>,
     state_at: &'t dyn Fn(Tick) -> Option<State>,
@@ -120,7 +120,7 @@ pub(in crate::engine) struct Explained<'t> {
 
 impl Explained<'_> {
     /// What decided the truth of a formula; no words where nothing in particular did.
-    pub(in crate::engine) fn truth(&self, root: NodeId) -> Said {
+    pub(super) fn truth(&self, root: NodeId) -> Said {
         let Self { prepared, recording, .. } = *self;
         let Ok(explanation) = explain(&prepared.tree, root, recording) else { return Said::default() };
         // Of those who are not there nothing is to be said, unless there is nobody else.
@@ -159,7 +159,7 @@ impl Explained<'_> {
     }
 
     /// Where the value of a metric comes from, in words, and since when it was so.
-    pub(in crate::engine) fn number(&self, root: TermId, value: f64, unit: &str) -> (Option<Tick>, Said) {
+    pub(super) fn number(&self, root: TermId, value: f64, unit: &str) -> (Option<Tick>, Said) {
         let tree = &self.prepared.tree;
         let (_, found) = sources(tree, root, Tick(0), self.recording);
         let never = value == f64::INFINITY && matches!(tree.terms[root.0 as usize], Term::TimeUntil(_));
@@ -192,12 +192,7 @@ impl Explained<'_> {
     }
 
     /// Which condition has the margin that the robustness of a formula is, and when.
-    pub(in crate::engine) fn margin(
-        &self,
-        root: NodeId,
-        value: Option<f64>,
-        unit: &str,
-    ) -> (Option<Tick>, Said) {
+    pub(super) fn margin(&self, root: NodeId, value: Option<f64>, unit: &str) -> (Option<Tick>, Said) {
         let prepared = self.prepared;
         let Some(found) = critical(&prepared.tree, root, self.recording) else {
             return (None, value.map_or(String::new(), |value| words::brief(value, unit)).into());

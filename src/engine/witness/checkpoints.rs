@@ -2,7 +2,7 @@
 //! run again from its start.
 
 /// Moments, by number.
-pub(in crate::engine) struct Checkpoints<T> {
+pub(super) struct Checkpoints<T> {
     list: Vec<(u64, T)>,
     /// Numbers of the moments that are kept are multiples of this.
     stride: u64,
@@ -11,12 +11,12 @@ pub(in crate::engine) struct Checkpoints<T> {
 
 impl<T: Clone> Checkpoints<T> {
     /// Nothing yet; at most so many will be kept, but two at least.
-    pub(in crate::engine) fn new(most: usize) -> Self {
+    pub(super) fn new(most: usize) -> Self {
         Self { list: Vec::new(), stride: 1, most: most.max(2) }
     }
 
     /// The next moment, with its number, which is the one after the last: it is kept if its turn has come.
-    pub(in crate::engine) fn offer(&mut self, number: u64, moment: impl FnOnce() -> T) {
+    pub(super) fn offer(&mut self, number: u64, moment: impl FnOnce() -> T) {
         if !number.is_multiple_of(self.stride) {
             return;
         }
@@ -30,7 +30,7 @@ impl<T: Clone> Checkpoints<T> {
     }
 
     /// The last moment kept of those that come `before`, which are the first ones.
-    pub(in crate::engine) fn last(&self, before: impl Fn(u64, &T) -> bool) -> Option<(u64, T)> {
+    pub(super) fn last(&self, before: impl Fn(u64, &T) -> bool) -> Option<(u64, T)> {
         let count = self.list.partition_point(|(number, moment)| before(*number, moment));
         self.list[..count].last().cloned()
     }

@@ -6,13 +6,13 @@ use crate::kernel::{Code, Readings, State};
 use crate::model::{AgentId, Bool, Num, Scenario, Set, Who};
 
 /// How many agents are named at most.
-pub(in crate::engine) const NAMED: usize = 3;
+pub(super) const NAMED: usize = 3;
 /// How many are asked about at once, first and at most.
 const FIRST: usize = 64;
 const AT_ONCE: usize = 4096;
 
 /// Looks for them in a state.
-pub(in crate::engine) struct Search<'s> {
+pub(super) struct Search<'s> {
     prepared: &'s PreparedWorld,
     state: &'s State,
     /// Whether the time is over.
@@ -30,11 +30,7 @@ pub(in crate::engine) struct Search<'s> {
 
 impl<'s> Search<'s> {
     /// Nobody found yet.
-    pub(in crate::engine) fn of(
-        prepared: &'s PreparedWorld,
-        state: &'s State,
-        stop: &'s dyn Fn() -> bool,
-    ) -> Self {
+    pub(super) fn of(prepared: &'s PreparedWorld, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
         Self {
             prepared,
             state,
@@ -48,13 +44,13 @@ impl<'s> Search<'s> {
     }
 
     /// Those who were found.
-    pub(in crate::engine) fn found(&self) -> &[AgentId] {
+    pub(super) fn found(&self) -> &[AgentId] {
         &self.found
     }
 
     /// The comparison that decides, if it is just one and about the first who was found: by name, or as the
     /// extreme of a fold.
-    pub(in crate::engine) fn compared(&self) -> Option<(&Num, &Num)> {
+    pub(super) fn compared(&self) -> Option<(&Num, &Num)> {
         let [(a, b)] = &self.compared[..] else { return None };
         let mut is_about = self.is_extreme;
         for side in [a, b] {
@@ -64,12 +60,12 @@ impl<'s> Search<'s> {
     }
 
     /// Whether the first who was found is a member of a set that is asked about.
-    pub(in crate::engine) const fn is_member(&self) -> bool {
+    pub(super) const fn is_member(&self) -> bool {
         self.is_member
     }
 
     /// What some numbers are in this state.
-    pub(in crate::engine) fn values(&self, nums: &[Num]) -> Vec<f64> {
+    pub(super) fn values(&self, nums: &[Num]) -> Vec<f64> {
         self.read(&[], nums).signals.iter().map(|lanes| lanes.0[0]).collect()
     }
 
@@ -80,28 +76,28 @@ impl<'s> Search<'s> {
     }
 
     /// The scenario.
-    pub(in crate::engine) fn scenario(&self) -> &'s Scenario {
+    pub(super) fn scenario(&self) -> &'s Scenario {
         &self.prepared.program.scenario
     }
 
     /// The name of an agent in this state.
-    pub(in crate::engine) fn name_of(&self, id: AgentId) -> Option<String> {
+    pub(super) fn name_of(&self, id: AgentId) -> Option<String> {
         self.scenario().agents.get(id.0 as usize)?;
         Some(self.state.name_of(self.scenario(), id, 0))
     }
 
     /// Whether nobody was found.
-    pub(in crate::engine) const fn is_empty(&self) -> bool {
+    pub(super) const fn is_empty(&self) -> bool {
         self.found.is_empty()
     }
 
     /// The first few who were found.
-    pub(in crate::engine) fn named(&self) -> &[AgentId] {
+    pub(super) fn named(&self) -> &[AgentId] {
         &self.found[..NAMED.min(self.found.len())]
     }
 
     /// Whether a condition of this state holds.
-    pub(in crate::engine) fn holds(&self, atom: &Bool) -> bool {
+    pub(super) fn holds(&self, atom: &Bool) -> bool {
         self.which(std::slice::from_ref(atom)).first().is_some_and(|holds| *holds)
     }
 
@@ -125,7 +121,7 @@ impl<'s> Search<'s> {
         found
     }
 
-    pub(in crate::engine) fn name(&mut self, id: AgentId) {
+    pub(super) fn name(&mut self, id: AgentId) {
         if !self.found.contains(&id) {
             self.found.push(id);
         }
@@ -133,11 +129,7 @@ impl<'s> Search<'s> {
 
     /// Names the members of sets that are spoken of by a name that they share, as `a` in `forall a in crowd`: those
     /// whose own names do not stand in the text.
-    pub(in crate::engine) fn name_members(
-        &mut self,
-        text: &str,
-        mentions: impl FnOnce(&mut dyn FnMut(AgentId)),
-    ) {
+    pub(super) fn name_members(&mut self, text: &str, mentions: impl FnOnce(&mut dyn FnMut(AgentId))) {
         let agents = &self.scenario().agents;
         mentions(&mut |id| {
             let hidden = |name: &str| name.ends_with(']') && !text.contains(name);
@@ -148,7 +140,7 @@ impl<'s> Search<'s> {
     }
 
     /// Names those who are there of whom a number speaks one by one, but not within a fold.
-    pub(in crate::engine) fn name_all_in(&mut self, num: &Num) {
+    pub(super) fn name_all_in(&mut self, num: &Num) {
         let mut named = Vec::new();
         spoken_of(num, &mut |id| named.push(id));
         named.retain(|id| self.is_there(*id));
@@ -157,7 +149,7 @@ impl<'s> Search<'s> {
         }
     }
 
-    pub(in crate::engine) fn is_there(&self, id: AgentId) -> bool {
+    pub(super) fn is_there(&self, id: AgentId) -> bool {
         let slot = self.state.slot(id.0 as usize, 0);
         self.state.present[slot.block].has(slot.lane)
     }
@@ -172,7 +164,7 @@ impl<'s> Search<'s> {
     }
 
     /// The agents that make a condition true or false.
-    pub(in crate::engine) fn walk(&mut self, atom: &Bool, truth: bool) {
+    pub(super) fn walk(&mut self, atom: &Bool, truth: bool) {
         match atom {
             Bool::Constant(_) => {}
             Bool::Not(inner) => self.walk(inner, !truth),
@@ -249,7 +241,7 @@ impl<'s> Search<'s> {
     }
 
     /// The member with the smallest or largest value of a fold names itself.
-    pub(in crate::engine) fn extremum(&mut self, num: &Num) {
+    pub(super) fn extremum(&mut self, num: &Num) {
         match num {
             Num::Combine(_, a, b) => {
                 self.extremum(a);

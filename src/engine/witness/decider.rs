@@ -27,7 +27,7 @@ pub struct Decider {
 }
 
 /// What decided, of the agents that were found; none where nobody was.
-pub(in crate::engine) fn decider(search: &Search<'_>) -> Option<Decider> {
+pub(super) fn decider(search: &Search<'_>) -> Option<Decider> {
     let (id, scenario) = (*search.found().first()?, search.scenario());
     let agent = search.name_of(id)?;
     let place = place_of(search, id)?;
@@ -51,7 +51,7 @@ pub(in crate::engine) fn decider(search: &Search<'_>) -> Option<Decider> {
 }
 
 /// A decider before the names of the agents: `: 0.21 m to westbound[6] at (9.2, 1.4) m`, and further agents.
-pub(in crate::engine) fn written(decider: &Decider, others: &[String]) -> String {
+pub(super) fn written(decider: &Decider, others: &[String]) -> String {
     let mut said = String::from(": ");
     if let Some(value) = decider.value {
         said.push_str(&words::brief(value, &decider.unit));

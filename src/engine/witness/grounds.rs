@@ -9,17 +9,17 @@ const MOST: usize = 2;
 
 /// A part that decides.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::engine) struct Ground<'p> {
-    pub(in crate::engine) part: &'p Part,
+pub(super) struct Ground<'p> {
+    pub(super) part: &'p Part,
     /// Its truth in the state.
-    pub(in crate::engine) truth: bool,
+    pub(super) truth: bool,
     /// Those of whom it is said, from the outermost quantifier on.
-    pub(in crate::engine) given: Vec<AgentId>,
+    pub(super) given: Vec<AgentId>,
 }
 
 impl Ground<'_> {
     /// The condition itself.
-    pub(in crate::engine) fn condition(&self) -> Bool {
+    pub(super) fn condition(&self) -> Bool {
         of_these(self.part.truth(), &self.given)
     }
 }
@@ -30,7 +30,7 @@ fn of_these(truth: Bool, given: &[AgentId]) -> Bool {
 }
 
 /// What can be asked of a state.
-pub(in crate::engine) trait Asked {
+pub(super) trait Asked {
     /// Whether a condition holds.
     fn holds(&self, condition: &Bool) -> bool;
 
@@ -42,11 +42,7 @@ pub(in crate::engine) trait Asked {
 }
 
 /// The parts that make a condition true or false. None where it is the other in this state, and where the time is over.
-pub(in crate::engine) fn grounds<'p>(
-    part: &'p Part,
-    truth: bool,
-    asked: &impl Asked,
-) -> Option<Vec<Ground<'p>>> {
+pub(super) fn grounds<'p>(part: &'p Part, truth: bool, asked: &impl Asked) -> Option<Vec<Ground<'p>>> {
     Search { asked }.of(part, truth, &[])
 }
 
@@ -120,7 +116,7 @@ fn few<'p>(found: Vec<Ground<'p>>, whole: impl Fn() -> Vec<Ground<'p>>) -> Vec<G
 
 /// The copies of processes that make a condition true or false: they may be spoken of by a name that they share, as `a` in
 /// `forall a in sensor`. Of what `narrowed` says is a part of another, those are told on whom it depends as a whole.
-pub(in crate::engine) fn copies(
+pub(super) fn copies(
     scenario: &Scenario,
     (condition, truth): (&Bool, bool),
     narrowed: bool,
@@ -156,7 +152,7 @@ pub(in crate::engine) fn copies(
 }
 
 /// Each of some names once, in the order of their mention.
-pub(in crate::engine) fn each<T: PartialEq>(all: Vec<T>) -> Vec<T> {
+pub(super) fn each<T: PartialEq>(all: Vec<T>) -> Vec<T> {
     let mut kept = Vec::new();
     for one in all {
         if !kept.contains(&one) {

@@ -26,7 +26,7 @@ const MOST_KEPT: usize = 64;
 
 /// When a trial was decided, s, the value of a metric, SI, and what decided it; in words, empty where it was time
 /// alone. `unit` is that of a metric. None where the time is over.
-pub(in crate::engine) fn decision(
+pub(super) fn decision(
     prepared: &PreparedWorld,
     column: usize,
     (index, seed): (u64, u64),
