@@ -1,7 +1,7 @@
 //! Batches of paths: they run the paths of a round, whichever thread and lane takes which.
 
 use super::path::Path;
-use super::paths::{Ended, EventPaths, PathResult, StepPaths};
+use super::paths::{Ended, PathResult, Paths};
 use crate::engine::fault::Fault;
 use crate::engine::trials::executor::Executor;
 use crate::engine::trials::prepared::PreparedWorld;
@@ -11,18 +11,12 @@ use crate::trials::budget::Budget;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// A batch, as the clock needs it.
-enum PathBatch<'s> {
-    Steps(Box<Batch<'s, StepPaths<'s>>>),
-    Events(Box<Batch<'s, EventPaths<'s>>>),
-}
-
 /// Batches that are warm, for one formula of a prepared world.
 pub(super) struct Batches<'s> {
     prepared: &'s PreparedWorld,
     /// Column of the formula, and of the robustness that is its level.
     columns: [usize; 2],
-    warm: Mutex<Vec<PathBatch<'s>>>,
+    warm: Mutex<Vec<Batch<'s, Paths<'s>>>>,
 }
 
 impl<'s> Batches<'s> {
@@ -30,16 +24,11 @@ impl<'s> Batches<'s> {
         Self { prepared, columns, warm: Mutex::new(Vec::new()) }
     }
 
-    fn batch(&self) -> Result<PathBatch<'s>, Fault> {
+    fn batch(&self) -> Result<Batch<'s, Paths<'s>>, Fault> {
         if let Some(warm) = self.warm.lock().ok().and_then(|mut list| list.pop()) {
             return Ok(warm);
         }
-        let program = &self.prepared.program;
-        Ok(if program.scenario.clock.is_jumps() {
-            PathBatch::Events(Box::new(Batch::new(program, EventPaths::new(self.prepared, self.columns)?)))
-        } else {
-            PathBatch::Steps(Box::new(Batch::new(program, StepPaths::new(self.prepared, self.columns)?)))
-        })
+        Ok(Batch::new(&self.prepared.program, Paths::new(self.prepared, self.columns)?))
     }
 
     /// Runs all paths; `None` where the budget said stop first. Which thread and which lane runs a path leaves no trace.
@@ -63,16 +52,8 @@ impl<'s> Batches<'s> {
             };
             let list = match self.batch() {
                 Ok(mut batch) => {
-                    let list = match &mut batch {
-                        PathBatch::Steps(batch) => {
-                            batch.run(&mut take, budget);
-                            batch.monitors.take()
-                        }
-                        PathBatch::Events(batch) => {
-                            batch.run(&mut take, budget);
-                            batch.monitors.take()
-                        }
-                    };
+                    batch.run(&mut take, budget);
+                    let list = std::mem::take(&mut batch.monitors.ended);
                     if let Ok(mut warm) = self.warm.lock() {
                         warm.push(batch);
                     }

@@ -41,20 +41,56 @@ impl PathResult {
 /// Paths that came to an end, by their places; or the model is wrong in them.
 pub(super) type Ended = Vec<(usize, Result<PathResult, Fault>)>;
 
+/// The paths of all lanes.
+type Lanewise = [PathResult; LANES];
+
+/// What watches the paths of all lanes.
+trait Watching {
+    /// A path begins in a lane.
+    fn start(&mut self, lane: usize);
+
+    /// Looks at the present states, as a monitor does.
+    fn observe(&mut self, paths: &mut Lanewise, run: &Run<'_>, fresh: Mask) -> Mask;
+
+    /// Judges the states before, as a monitor does.
+    fn follow(&mut self, _: &mut Lanewise, _: &Run<'_>, _moved: Mask) -> Mask {
+        Mask::NONE
+    }
+}
+
 /// The paths of all lanes, and those that ended.
-struct Paths<'s> {
+pub(super) struct Paths<'s> {
     prepared: &'s PreparedWorld,
-    lanes: [PathResult; LANES],
-    ended: Ended,
+    watching: Box<dyn Watching + Send + 's>,
+    lanes: Lanewise,
+    /// Paths that came to an end.
+    pub(super) ended: Ended,
 }
 
 impl<'s> Paths<'s> {
-    fn new(prepared: &'s PreparedWorld) -> Self {
-        Self { prepared, lanes: Default::default(), ended: Vec::new() }
+    /// For a column that is a formula, and one that is the robustness that is its level.
+    pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
+        let watching: Box<dyn Watching + Send + 's> = if prepared.program.scenario.clock.is_jumps() {
+            Box::new(EventPaths::new(prepared, columns)?)
+        } else {
+            Box::new(StepPaths { group: ColumnGroup::of(prepared, &columns)? })
+        };
+        Ok(Self { prepared, watching, lanes: Default::default(), ended: Vec::new() })
+    }
+}
+
+impl Monitors for Paths<'_> {
+    fn start(&mut self, lane: usize, _: bool) {
+        self.lanes[lane] = PathResult::default();
+        self.watching.start(lane);
     }
 
-    fn start(&mut self, lane: usize) {
-        self.lanes[lane] = PathResult::default();
+    fn observe(&mut self, run: &Run<'_>, fresh: Mask) -> Mask {
+        self.watching.observe(&mut self.lanes, run, fresh)
+    }
+
+    fn follow(&mut self, run: &Run<'_>, moved: Mask) -> Mask {
+        self.watching.follow(&mut self.lanes, run, moved)
     }
 
     fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
@@ -78,31 +114,17 @@ fn finite(level: f64) -> f64 {
 }
 
 /// From step to step.
-pub(super) struct StepPaths<'s> {
+struct StepPaths {
     /// The formula and its level.
     group: ColumnGroup,
-    paths: Paths<'s>,
 }
 
-impl<'s> StepPaths<'s> {
-    /// For a column that is a formula, and one that is the robustness that is its level.
-    pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
-        Ok(Self { group: ColumnGroup::of(prepared, &columns)?, paths: Paths::new(prepared) })
-    }
-
-    /// The paths that ended since this was asked last.
-    pub(super) fn take(&mut self) -> Ended {
-        std::mem::take(&mut self.paths.ended)
-    }
-}
-
-impl Monitors for StepPaths<'_> {
-    fn start(&mut self, lane: usize, _: bool) {
+impl Watching for StepPaths {
+    fn start(&mut self, lane: usize) {
         self.group.start(lane);
-        self.paths.start(lane);
     }
 
-    fn observe(&mut self, run: &Run<'_>, _: Mask) -> Mask {
+    fn observe(&mut self, paths: &mut Lanewise, run: &Run<'_>, _: Mask) -> Mask {
         let state = run.state();
         let occupied = run.occupied();
         let gone = if self.group.follows[0] { state.queues.reused } else { Mask::NONE };
@@ -118,7 +140,7 @@ impl Monitors for StepPaths<'_> {
             Observer::Formula(_) | Observer::Metric(_) => Lanes::ZERO,
         };
         for lane in occupied.iter() {
-            let path = &mut self.paths.lanes[lane];
+            let path = &mut paths[lane];
             let time = state.ticks[lane];
             path.lost = lost.has(lane);
             if !path.lost {
@@ -131,14 +153,6 @@ impl Monitors for StepPaths<'_> {
         }
         decided | lost
     }
-
-    fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
-        self.paths.finish(place, lane, run);
-    }
-
-    fn refuse(&mut self, place: usize) {
-        self.paths.refuse(place);
-    }
 }
 
 /// From jump to jump.
@@ -146,19 +160,18 @@ impl Monitors for StepPaths<'_> {
 /// A path may be continued from any stopping time. The level that a state forces as it begins counts from the jump to
 /// that state; one that is forced while the state lasts (a window ends) counts from the next jump, which is known
 /// by then. Times are the bits of seconds, which order as the seconds do.
-pub(super) struct EventPaths<'s> {
+struct EventPaths {
     view: View,
     seen: ViewReadings,
     formulas: Vec<SignalMonitor>,
     levels: Vec<SignalRobustness>,
     /// When the state of each lane began that will be judged next, s.
     since: [f64; LANES],
-    paths: Paths<'s>,
+    most_jumps: u64,
 }
 
-impl<'s> EventPaths<'s> {
-    /// For a column that is a formula, and one that is the robustness that is its level.
-    pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
+impl EventPaths {
+    fn new(prepared: &PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
         let [formula, level] = columns;
         Ok(Self {
             view: prepared.view(&columns),
@@ -166,18 +179,13 @@ impl<'s> EventPaths<'s> {
             formulas: vec![prepared.signal_monitor(formula)?; LANES],
             levels: vec![prepared.signal_robustness(level)?.closely(); LANES],
             since: [0.0; LANES],
-            paths: Paths::new(prepared),
+            most_jumps: prepared.most_jumps,
         })
-    }
-
-    /// The paths that ended since this was asked last.
-    pub(super) fn take(&mut self) -> Ended {
-        std::mem::take(&mut self.paths.ended)
     }
 
     /// The present state of a lane begins at a time, or its trial has reached the horizon: judges the state before.
     /// Whether the path is over.
-    fn judge(&mut self, run: &Run<'_>, lane: usize, now: Option<Instant>) -> bool {
+    fn judge(&mut self, path: &mut PathResult, run: &Run<'_>, lane: usize, now: Option<Instant>) -> bool {
         let (formula, level) = (&mut self.formulas[lane], &mut self.levels[lane]);
         let (reading, bounds) = if let Some(now) = now {
             let (atoms, signals) = self.view.of(run.state(), &mut self.seen, lane);
@@ -187,7 +195,6 @@ impl<'s> EventPaths<'s> {
         };
         let jumps = run.state().clocks.jumps[lane];
         let (since, next) = (self.since[lane], now.map_or(f64::INFINITY, |now| now.seconds));
-        let path = &mut self.paths.lanes[lane];
         let flight = &mut path.flight;
         flight.rise(since.to_bits(), finite(level.at_start()));
         if let Some(logic::Reading::Truth(true)) = reading
@@ -202,20 +209,19 @@ impl<'s> EventPaths<'s> {
         path.lost = match reading {
             Some(logic::Reading::Truth(_)) => false,
             Some(_) => true,
-            None => level.is_overfull() || jumps >= self.paths.prepared.most_jumps,
+            None => level.is_overfull() || jumps >= self.most_jumps,
         };
         (path.steps, path.ended, self.since[lane]) = (jumps, next.to_bits(), next);
         reading.is_some() || path.lost
     }
 }
 
-impl Monitors for EventPaths<'_> {
-    fn start(&mut self, lane: usize, _: bool) {
-        self.paths.start(lane);
+impl Watching for EventPaths {
+    fn start(&mut self, lane: usize) {
         self.since[lane] = 0.0;
     }
 
-    fn observe(&mut self, run: &Run<'_>, fresh: Mask) -> Mask {
+    fn observe(&mut self, _: &mut Lanewise, run: &Run<'_>, fresh: Mask) -> Mask {
         if !fresh.is_empty() {
             self.view.look(run.state(), &mut self.seen);
         }
@@ -229,21 +235,13 @@ impl Monitors for EventPaths<'_> {
         Mask::NONE
     }
 
-    fn follow(&mut self, run: &Run<'_>, moved: Mask) -> Mask {
+    fn follow(&mut self, paths: &mut Lanewise, run: &Run<'_>, moved: Mask) -> Mask {
         self.view.look(run.state(), &mut self.seen);
         let mut over = run.ended();
         for lane in (run.occupied() & !over).iter() {
             let now = moved.has(lane).then(|| run.state().clocks.instant(lane));
-            over |= if self.judge(run, lane, now) { Mask::lane(lane) } else { Mask::NONE };
+            over |= if self.judge(&mut paths[lane], run, lane, now) { Mask::lane(lane) } else { Mask::NONE };
         }
         over
-    }
-
-    fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
-        self.paths.finish(place, lane, run);
-    }
-
-    fn refuse(&mut self, place: usize) {
-        self.paths.refuse(place);
     }
 }
