@@ -96,12 +96,16 @@ impl Bootstrap {
             return None;
         }
         values.sort_unstable_by(f64::total_cmp);
-        // The ends have these ranks among the resamples and the sample itself.
-        let rank = |share: f64| (share * (values.len() + 1) as f64).round() as usize;
-        let at = |rank: usize| values[rank.clamp(1, values.len()) - 1];
-        let tail = 0.5 * (1.0 - self.confidence);
-        Some([at(rank(tail)), at(rank(1.0 - tail))])
+        Some(percentiles(&values, self.confidence))
     }
+}
+
+/// The ends of the percentile interval of a statistic, by its values in some resamples, ascending.
+pub(super) fn percentiles(values: &[f64], confidence: f64) -> [f64; 2] {
+    // The ends have these ranks among the resamples and the sample itself.
+    let rank = |share: f64| (share * (values.len() + 1) as f64).round() as usize;
+    let tail = 0.5 * (1.0 - confidence);
+    [tail, 1.0 - tail].map(|share| values[rank(share).clamp(1, values.len()) - 1])
 }
 
 /// The ratio of two sums over persons, each with parts of both: a mean over all instants, or a share of them. It has

@@ -114,14 +114,13 @@ pub const SPRT: Spec = Spec {
 pub const SPRT2: Spec = Spec {
     name: "sprt2",
     reported: "sprt2",
-    serves: Serves::Check,
     arguments: &[ALPHA, BETA, Argument::indifference(1e-5)],
     summary: "2-SPRT, alpha {alpha}, beta {beta}, indifference {indifference}",
     guarantee: "as sprt, and the number of trials is bounded",
     make: Make::Test(|against, values| {
         Ok(TwoSprt::new(against.theta, values[2], values[0], values[1])?.into_any())
     }),
-    forecast: Some(WALD),
+    ..SPRT
 };
 
 /// The procedure as queries name it.
@@ -196,38 +195,35 @@ pub const OKAMOTO: Spec = Spec {
 pub const MASSART: Spec = Spec {
     name: "massart",
     reported: "massart",
-    serves: Serves::Probability,
-    arguments: &[EPSILON, DELTA],
     summary: "sequential Massart bound for ± {epsilon}, error {delta}",
     guarantee: "P in the interval of half width epsilon, argued rather than proven",
     make: Make::Estimator(|values, _| {
         Ok(Massart::new(values[0], values[1], massart::SHARE * values[1])?.into_any())
     }),
     forecast: Some(Forecast { trials: until_narrow, scatter: (0.9, 2.2) }),
+    ..OKAMOTO
 };
 
 /// The procedure as queries name it.
 pub const SPENDING: Spec = Spec {
     name: "spending",
     reported: "spending",
-    serves: Serves::Probability,
-    arguments: &[EPSILON, DELTA],
     summary: "Clopper-Pearson with alpha spending for ± {epsilon}, error {delta}",
     guarantee: "P in the interval of half width epsilon, by a union bound over looks",
     make: Make::Estimator(|values, _| Ok(Spending::new(values[0], values[1])?.into_any())),
     forecast: Some(Forecast { trials: until_narrow, scatter: (0.9, 2.2) }),
+    ..OKAMOTO
 };
 
 /// The procedure as queries name it.
 pub const CLOPPER_PEARSON: Spec = Spec {
     name: "clopper_pearson",
     reported: "clopper_pearson",
-    serves: Serves::Probability,
     arguments: &[Argument::trials(1_000_000_000_000), DELTA],
     summary: "{trials} trials, error {delta}",
     guarantee: "an exact interval at a number of trials fixed in advance",
     make: Make::Estimator(|values, _| Ok(FixedSize::new(values[0] as u64, values[1])?.into_any())),
-    forecast: None,
+    ..OKAMOTO
 };
 
 /// The same under the name that estimates of every kind share.
@@ -257,19 +253,17 @@ pub const GBAS: Spec = Spec {
 pub const PROBABILITY_WITHIN: Spec = Spec {
     name: "default",
     reported: "calibrated",
-    serves: Serves::Probability,
-    arguments: &[EPSILON, DELTA],
     summary: "fewest trials for ± {epsilon}, error {delta}",
     guarantee: "P in the interval of half width epsilon",
     make: Make::Estimator(|values, _| AnyEstimator::within(values[0], values[1])),
     forecast: Some(Forecast { trials: until_narrow, scatter: WIDTH_SCATTER }),
+    ..OKAMOTO
 };
 
 /// The procedure as queries name it.
 pub const SPLITTING: Spec = Spec {
     name: "splitting",
     reported: "splitting",
-    serves: Serves::Probability,
     arguments: &[
         whole("replicas", 10.0, |_| 1e6, |_| 1000.0, None),
         whole("runs", 2.0, |_| 1000.0, |_| 20.0, None),
@@ -293,7 +287,7 @@ pub const SPLITTING: Spec = Spec {
     summary: "adaptive splitting, {runs} runs of {replicas} paths, after {plain} plain trials",
     guarantee: "a lower bound of P from the runs, an upper one from plain trials",
     make: Make::Splitting { adaptive: true },
-    forecast: None,
+    ..OKAMOTO
 };
 
 /// The same at the levels of a pilot run.

@@ -2,8 +2,8 @@
 //! bounds both errors of a test with an indifference region.
 
 use crate::base::special::{beta_tails, normal_quantile};
-use crate::stats::invalid::{Invalid, probability, range, region};
-use crate::stats::sprt::region_statement;
+use crate::stats::invalid::Invalid;
+use crate::stats::sprt::Region;
 use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, bisection};
 
 /// P >= theta + indifference against P <= theta - indifference by a fixed number of trials.
@@ -11,10 +11,7 @@ use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, bisectio
 /// It stops as soon as the rest cannot change the decision, which changes neither decision nor errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    low: f64,
-    high: f64,
-    alpha: f64,
-    beta: f64,
+    region: Region,
     size: u64,
     needed: u64,
 }
@@ -49,10 +46,8 @@ fn critical(n: u64, p: f64, alpha: f64) -> u64 {
 impl Plan {
     /// Parameters as those of the SPRT; the indifference must be at least 0.0005.
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
-        let (low, high) = region(theta, indifference)?;
-        range("indifference", indifference, 0.000_5, 0.5)?;
-        probability("alpha", alpha)?;
-        probability("beta", beta)?;
+        let region = Region::new(theta, indifference, 0.000_5, (alpha, beta))?;
+        let Region { low, high, .. } = region;
         // The best test with randomisation only improves with n, so the smallest n at which it meets both
         // bounds is found by bisection; the smallest plan without randomisation lies at most a little
         // beyond.
@@ -76,7 +71,7 @@ impl Plan {
             size += 1;
             needed = critical(size, high, alpha);
         }
-        Ok(Sequential::new(Self { low, high, alpha, beta, size, needed }))
+        Ok(Sequential::new(Self { region, size, needed }))
     }
 
     /// The number of trials, and the least number of successes for `Above`.
@@ -114,7 +109,7 @@ impl Rule for Plan {
 
 impl Test for Plan {
     fn certifies(&self, decision: Decision) -> Statement {
-        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
+        self.region.certifies(decision)
     }
 }
 

@@ -4,19 +4,52 @@
 //! (1 - beta)/alpha, beta/(1 - alpha) only bounds their sum.
 
 use crate::base::math;
-use crate::stats::invalid::{Invalid, probability, region};
+use crate::stats::invalid::{Invalid, probability, range, region};
 use crate::stats::{Claim, Counts, Decision, Rule, Sequential, Statement, Test, Weight, Weights};
 
 /// Thresholds are widened by this much, against rounding.
 pub(super) const SLACK: f64 = 1e-9;
 
+/// The indifference region of a test, and the errors at its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Region {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    alpha: f64,
+    beta: f64,
+}
+
+impl Region {
+    /// Refuses a region that leaves (0, 1), and an indifference below `least`.
+    pub(super) fn new(
+        theta: f64,
+        indifference: f64,
+        least: f64,
+        (alpha, beta): (f64, f64),
+    ) -> Result<Self, Invalid> {
+        let (low, high) = region(theta, indifference)?;
+        range("indifference", indifference, least, 0.5)?;
+        probability("alpha", alpha)?;
+        probability("beta", beta)?;
+        Ok(Self { low, high, alpha, beta })
+    }
+
+    /// What a decision certifies: `Above` is wrong only for P <= low, with probability at most `beta`; `Below` only for
+    /// P >= high, at most `alpha`.
+    pub(super) fn certifies(&self, decision: Decision) -> Statement {
+        let Self { low, high, alpha, beta } = *self;
+        match decision {
+            Decision::Above => Statement { claim: Claim::Above(low), error: beta },
+            Decision::Below => Statement { claim: Claim::Below(high), error: alpha },
+            Decision::Within => Statement { claim: Claim::Between(low, high), error: alpha + beta },
+        }
+    }
+}
+
 /// P >= theta + indifference against P <= theta - indifference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprt {
-    low: f64,
-    high: f64,
-    alpha: f64,
-    beta: f64,
+    region: Region,
     /// Log likelihood ratio of `low` over `high` of one success (negative) and of one failure.
     per_success: f64,
     per_failure: f64,
@@ -29,16 +62,11 @@ impl Sprt {
     /// `alpha` bounds the error of deciding `Below` though P >= theta + indifference, `beta` that of
     /// deciding `Above` though P <= theta - indifference. Refuses a region that leaves (0, 1).
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
-        let (low, high) = region(theta, indifference)?;
-        probability("alpha", alpha)?;
-        probability("beta", beta)?;
+        let region = Region::new(theta, indifference, 0.0, (alpha, beta))?;
         Ok(Sequential::new(Self {
-            low,
-            high,
-            alpha,
-            beta,
-            per_success: math::ln(low / high),
-            per_failure: math::ln((1.0 - low) / (1.0 - high)),
+            per_success: math::ln(region.low / region.high),
+            per_failure: math::ln((1.0 - region.low) / (1.0 - region.high)),
+            region,
             say_below: -math::ln(alpha) + SLACK,
             say_above: math::ln(beta) - SLACK,
         }))
@@ -80,22 +108,7 @@ impl Test for Sprt {
     }
 
     fn certifies(&self, decision: Decision) -> Statement {
-        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
-    }
-}
-
-/// What a decision of a test with an indifference region certifies: `Above` is wrong only for P <= low,
-/// with probability at most `beta`; `Below` only for P >= high, at most `alpha`.
-pub(super) fn region_statement(
-    decision: Decision,
-    (low, high): (f64, f64),
-    alpha: f64,
-    beta: f64,
-) -> Statement {
-    match decision {
-        Decision::Above => Statement { claim: Claim::Above(low), error: beta },
-        Decision::Below => Statement { claim: Claim::Below(high), error: alpha },
-        Decision::Within => Statement { claim: Claim::Between(low, high), error: alpha + beta },
+        self.region.certifies(decision)
     }
 }
 

@@ -4,17 +4,14 @@
 //! Errors are bounded as with the SPRT, and the number of trials has a bound: the test for hard deadlines.
 
 use crate::base::math;
-use crate::stats::invalid::{Invalid, probability, range, region};
-use crate::stats::sprt::{SLACK, region_statement};
+use crate::stats::invalid::Invalid;
+use crate::stats::sprt::{Region, SLACK};
 use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, Weight, Weights};
 
 /// P >= theta + indifference against P <= theta - indifference, with a closed region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoSprt {
-    low: f64,
-    high: f64,
-    alpha: f64,
-    beta: f64,
+    region: Region,
     /// Log likelihood ratios of theta over the high end, per success and failure.
     over_high: (f64, f64),
     /// Log likelihood ratios of theta over the low end, per success and failure.
@@ -27,14 +24,11 @@ pub struct TwoSprt {
 impl TwoSprt {
     /// Parameters as those of the SPRT; the indifference must be at least 0.00001.
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
-        let (low, high) = region(theta, indifference)?;
-        range("indifference", indifference, 1e-5, 0.5)?;
-        probability("alpha", alpha)?;
-        probability("beta", beta)?;
+        let region = Region::new(theta, indifference, 1e-5, (alpha, beta))?;
         let over = |end: f64| (math::ln(theta / end), math::ln((1.0 - theta) / (1.0 - end)));
-        let (over_high, over_low) = (over(high), over(low));
+        let (over_high, over_low) = (over(region.high), over(region.low));
         let thresholds = (-math::ln(alpha) + SLACK, -math::ln(beta) + SLACK);
-        let mut test = Self { low, high, alpha, beta, over_high, over_low, thresholds, limit: 0 };
+        let mut test = Self { region, over_high, over_low, thresholds, limit: 0 };
         test.limit = test.closed_at();
         Ok(Sequential::new(test))
     }
@@ -102,7 +96,7 @@ impl Test for TwoSprt {
     }
 
     fn certifies(&self, decision: Decision) -> Statement {
-        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
+        self.region.certifies(decision)
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::summary::quantile;
 use super::{Draws, below};
+use crate::stats::bootstrap::percentiles;
 
 /// A ratio of interquartile ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,10 +46,8 @@ pub fn spread_ratio(
         ratios.push(if one.is_nan() { f64::INFINITY } else { one });
     }
     ratios.sort_unstable_by(f64::total_cmp);
-    let rank = |q: f64| (q * f64::from(resamples + 1)).round() as usize;
-    let at = |rank: usize| ratios.get(rank.clamp(1, ratios.len().max(1)) - 1).copied().unwrap_or(ratio);
-    let tail = 0.5 * (1.0 - confidence);
-    Some(SpreadRatio { ratio, low: at(rank(tail)), high: at(rank(1.0 - tail)) })
+    let [low, high] = if resamples == 0 { [ratio; 2] } else { percentiles(&ratios, confidence) };
+    Some(SpreadRatio { ratio, low, high })
 }
 
 #[cfg(test)]
