@@ -249,10 +249,7 @@ impl<'a> Session<'a> {
     }
 
     /// The queries in groups, in the order in which the first of each was written.
-    fn groups<'q>(&self, asked: &[&'q Query]) -> Result<Vec<Group<'q>>, Fault>
-    where
-        'a: 'q,
-    {
+    fn groups(&self, asked: &[&'a Query]) -> Result<Vec<Group<'a>>, Fault> {
         let mut groups = Vec::new();
         let mut taken = vec![false; asked.len()];
         for (at, &query) in asked.iter().enumerate() {
@@ -264,7 +261,7 @@ impl<'a> Session<'a> {
                     let prepared = self.prepared(measure.target.world)?;
                     let columns = [measure.target.column, *level];
                     let rule = splitting::Rule::of(estimator).ok_or(Fault::Unsuitable)?;
-                    Box::new(Question::new((at, query), prepared, columns, rule, self.call.seed)) as Group<'q>
+                    Box::new(Question::new((at, query), prepared, columns, rule, self.call.seed)) as Group<'a>
                 }
                 Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
                     // All checks and estimates of a world read the same trials.
@@ -292,7 +289,7 @@ impl<'a> Session<'a> {
         Ok(groups)
     }
 
-    fn entry<'q>(&self, place: usize, query: &'q Query) -> Result<EstimateEntry<'q>, Fault> {
+    fn entry(&self, place: usize, query: &'a Query) -> Result<EstimateEntry<'a>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
@@ -312,10 +309,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    fn compare<'q>(&self, place: usize, query: &'q Query) -> Result<CompareSampling<'q>, Fault>
-    where
-        'a: 'q,
-    {
+    fn compare(&self, place: usize, query: &'a Query) -> Result<CompareSampling<'a>, Fault> {
         let Ask::Compare { first, second, within, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
@@ -327,10 +321,7 @@ impl<'a> Session<'a> {
         CompareSampling::new((place, query), &sides, &first.kind, (*within, *delta), asked)
     }
 
-    fn rank<'q>(&self, place: usize, query: &'q Query) -> Result<RankSampling<'q>, Fault>
-    where
-        'a: 'q,
-    {
+    fn rank(&self, place: usize, query: &'a Query) -> Result<RankSampling<'a>, Fault> {
         let Ask::Rank { options, measure, ranking, models, beside } = &query.ask else {
             return Err(Fault::Unsuitable);
         };

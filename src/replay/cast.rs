@@ -1,5 +1,6 @@
 //! Who is who: the user of a model, and whether everybody else is declared by a part that somebody else can play.
 
+use super::Diagnosed;
 use crate::advise::{Role, role};
 use crate::syntax::ast::{Ident, Item, Recorded, ScenarioFile, Whom};
 use crate::syntax::codes::Code;
@@ -21,7 +22,7 @@ impl Cast {
     ///
     /// # Errors
     /// Where something of the model is in no recording, or nobody is the user.
-    pub fn of(file: &ScenarioFile, tracks: &str) -> Result<Self, Vec<Diagnostic>> {
+    pub fn of(file: &ScenarioFile, tracks: &str) -> Diagnosed<Self> {
         let mut wrong = Vec::new();
         let mut people: Vec<(&Ident, &Recorded)> = Vec::new();
         for item in &file.items {

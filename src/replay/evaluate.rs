@@ -3,6 +3,7 @@
 //! At each instant at which somebody moves and whose next seconds are recorded, trials of the model begin with those who are
 //! there. The share of them in which a property holds is compared with whether it held in the recording.
 
+use super::Diagnosed;
 use super::displacement::Displacement;
 use super::formulas::targets;
 use super::instants::Instant;
@@ -16,7 +17,6 @@ use crate::engine::trials::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::cell::Series;
 use std::collections::BTreeSet;
 
@@ -91,12 +91,12 @@ pub fn evaluate(
     instants: &[Judged],
     options: &Evaluating,
     (threads, drivers): (&Threads, &MakeDrivers),
-) -> Result<Predicted, Vec<Diagnostic>> {
+) -> Diagnosed<Predicted> {
     let own = replay.with_kind(kind)?;
     // Without any random number one trial says all.
     let trials = if kind == CONSTANT { 1 } else { options.trials };
     let numbered: Vec<(u64, &Judged)> = (0..).zip(instants).collect();
-    let one = |(number, judged): &(u64, &Judged)| -> Result<Row, Vec<Diagnostic>> {
+    let one = |(number, judged): &(u64, &Judged)| -> Diagnosed<Row> {
         let study = own.study_if_placed(judged.instant)?.filter(|_| judged.reach.is_some());
         let Some(study) = study else { return Ok((vec![None; own.formulas.names.len()], None)) };
         let targets = targets(&study);

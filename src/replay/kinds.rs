@@ -1,5 +1,6 @@
 //! The same model with people of another kind.
 
+use super::Diagnosed;
 use super::situation::Replay;
 use crate::compile::presets::PRESETS;
 use crate::model::Kind;
@@ -122,7 +123,7 @@ impl Replay {
     ///
     /// # Errors
     /// Where there is no such kind.
-    pub fn with_kind(&self, name: &str) -> Result<Self, Vec<Diagnostic>> {
+    pub fn with_kind(&self, name: &str) -> Diagnosed<Self> {
         let id = SourceId(self.sources.len() as u16);
         let (scenario, source) = with_kind(&self.scenario, name, id).map_err(|error| vec![error])?;
         let mut own = self.clone();

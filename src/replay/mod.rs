@@ -32,3 +32,6 @@ pub use realism::{FEATURES, PersonRealism, ROLLOUTS, realism};
 pub use region::{Fit, HORIZONS, REGION};
 pub use situation::{Replay, Whose};
 pub use source::source;
+
+/// What could be made of an input, or what is wrong with it.
+pub type Diagnosed<T> = Result<T, Vec<crate::syntax::diagnostic::Diagnostic>>;

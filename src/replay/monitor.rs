@@ -3,6 +3,7 @@
 //! From each instant on, everybody of the model is where the recording has them, resampled at the step of the scenario. The
 //! radii are the means of the kind. A body of several people is at their mean.
 
+use super::Diagnosed;
 use super::course::{Beyond, course};
 use super::formulas::{self, Asked, targets};
 use super::instants::Instant;
@@ -12,7 +13,6 @@ use crate::compile::study::World;
 use crate::engine::trials::given::{averaged, judge};
 use crate::engine::{PreparedWorld, Threads};
 use crate::model::{AgentId, Parameter};
-use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::cell::Reading;
 
 /// What one instant came to.
@@ -37,7 +37,7 @@ pub fn monitor(
     instants: &[Instant],
     beyond: Beyond,
     threads: &Threads,
-) -> Result<Vec<Judged>, Vec<Diagnostic>> {
+) -> Diagnosed<Vec<Judged>> {
     let one = |instant: &Instant| {
         let judged = |truths, values, reach| Ok(Judged { instant: *instant, truths, values, reach });
         let Some(study) = replay.study_if_placed(*instant)? else {

@@ -5,6 +5,7 @@
 //! the share of the bin in which the recorded number lies. All persons of a time are simulated together; only those who
 //! are recorded throughout count, in the recording and in trials alike.
 
+use super::Diagnosed;
 use super::evaluate::PREDICTED;
 use super::formulas::targets;
 use super::measure::encounters::meeting;
@@ -16,7 +17,6 @@ use crate::base::tick::Tick;
 use crate::engine::trials::sample::{Followed, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::cell::Series;
 
 /// What is scored.
@@ -41,7 +41,7 @@ pub fn realism(
     instants: &[Judged],
     seed: u64,
     (threads, drivers): (&Threads, &MakeDrivers),
-) -> Result<Vec<PersonRealism>, Vec<Diagnostic>> {
+) -> Diagnosed<Vec<PersonRealism>> {
     let own = replay.with_kind(kind)?;
     let groups = instants.chunk_by(|a, b| a.instant.time == b.instant.time);
     let times: Vec<(u64, &[Judged])> = (0..).zip(groups).collect();
@@ -57,7 +57,7 @@ fn at_one_time(
     group: &[Judged],
     series: Series,
     drivers: &MakeDrivers,
-) -> Result<Vec<PersonRealism>, Vec<Diagnostic>> {
+) -> Diagnosed<Vec<PersonRealism>> {
     let Some(Judged { instant: user, reach: Some(reach), .. }) = group.first() else { return Ok(Vec::new()) };
     let Some(study) = replay.study_if_placed(*user)? else { return Ok(Vec::new()) };
     let index = targets(&study).first().map_or(study.base, |target| target.world);

@@ -1,5 +1,6 @@
 //! A model with a recording, compiled at one instant after the other.
 
+use super::Diagnosed;
 use super::cast::Cast;
 use super::course::{Beyond, course};
 use super::formulas::Formulas;
@@ -53,12 +54,7 @@ impl Replay {
     ///
     /// # Errors
     /// Where the model or the recording cannot be read, they do not fit together, or there is nothing to ask.
-    pub fn new(
-        input: &Input<'_>,
-        tracks: &str,
-        velocity: Velocity,
-        whose: Whose,
-    ) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(input: &Input<'_>, tracks: &str, velocity: Velocity, whose: Whose) -> Diagnosed<Self> {
         Self::at_site(input, tracks, velocity, whose, |_| Ok(None))
     }
 
@@ -72,7 +68,7 @@ impl Replay {
         velocity: Velocity,
         whose: Whose,
         site: impl FnOnce(&Self) -> Result<Option<Site>, Diagnostic>,
-    ) -> Result<Self, Vec<Diagnostic>> {
+    ) -> Diagnosed<Self> {
         let file = source(input.scenario, input.files, tracks).map_err(|one| vec![one])?;
         let recorded = file.recording().map_err(|error| vec![error])?;
         let cast = Cast::of(input.scenario, tracks)?;
@@ -109,7 +105,7 @@ impl Replay {
     }
 
     /// Asks for all properties, and reports what is wrong with the model at the first instant.
-    fn ask(&mut self, input: &Input<'_>) -> Result<(), Vec<Diagnostic>> {
+    fn ask(&mut self, input: &Input<'_>) -> Diagnosed<()> {
         self.formulas = Formulas::of(input.properties, SourceId(self.sources.len() as u16));
         self.sources.push(self.formulas.source.clone());
         if self.formulas.names.is_empty() && !self.formulas.has_numbers && !input.properties.is_empty() {
@@ -161,7 +157,7 @@ impl Replay {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub(super) fn study_at(&self, instant: Instant) -> Result<Study, Vec<Diagnostic>> {
+    pub(super) fn study_at(&self, instant: Instant) -> Diagnosed<Study> {
         let Instant { time, person } = instant;
         let present = self.recording.at(time).into_iter();
         let mut people: Vec<_> = present.map(|one| sighting(self.written(person, one.id), &one)).collect();
@@ -183,7 +179,7 @@ impl Replay {
     }
 
     /// The model at an instant; `None` where its people have no place there.
-    pub(super) fn study_if_placed(&self, instant: Instant) -> Result<Option<Study>, Vec<Diagnostic>> {
+    pub(super) fn study_if_placed(&self, instant: Instant) -> Diagnosed<Option<Study>> {
         match self.study_at(instant) {
             Ok(study) => Ok(Some(study)),
             Err(errors) if !errors.is_empty() && errors.iter().all(is_of_a_place) => Ok(None),

@@ -1,5 +1,6 @@
 //! Certified statements in words.
 
+use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Measure, MeasureKind, Query, Said};
 use crate::stats::{Claim, Coverage, Statement};
 
@@ -158,6 +159,14 @@ pub(in crate::engine) fn level(error: f64) -> String {
         scale *= 10.0;
     }
     format!("{:.places$} %", 100.0 - percent)
+}
+
+/// A time of a trial.
+pub(in crate::engine) fn moment(clock: Clock, at: Tick) -> String {
+    match clock {
+        Clock::Steps => format!("step {}", at.0),
+        clock => quantity(clock.seconds(at), "s"),
+    }
 }
 
 /// Of a condition; "holds" and "fails" are said of what was asked.

@@ -1,6 +1,6 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
-use crate::base::tick::{Clock, Tick};
+use crate::base::tick::Tick;
 use crate::compile::study;
 use crate::engine::answer::words;
 use crate::engine::trials::prepared::PreparedWorld;
@@ -266,10 +266,7 @@ impl Explained<'_> {
     }
 
     fn moment(&self, at: Tick) -> String {
-        match self.prepared.program.scenario.clock {
-            Clock::Steps => format!("step {}", at.0),
-            clock => format!("{} s", words::number(clock.seconds(at))),
-        }
+        words::moment(self.prepared.program.scenario.clock, at)
     }
 
     /// A reason in words.

@@ -41,7 +41,7 @@ pub(in crate::engine) fn unresolved(
     let mut missing = None;
     loop {
         let state = run.state();
-        let time = moment(scenario, state.ticks[0]);
+        let time = words::moment(scenario.clock, Tick(state.ticks[0]));
         let queues = &state.queues;
         let lost_sight = || queues.lost_sight(&scenario.sources, 0).filter(|_| group.follows[0]);
         if let Some(reason) = queues.overrun(&scenario.sources, 0).or_else(lost_sight) {
@@ -110,13 +110,6 @@ fn runaway(scenario: &Scenario, state: &State) -> String {
     }
 }
 
-fn moment(scenario: &Scenario, tick: u64) -> String {
-    match scenario.clock {
-        crate::base::tick::Clock::Steps => format!("step {tick}"),
-        clock => words::quantity(clock.seconds(Tick(tick)), "s"),
-    }
-}
-
 /// Which bodies overlap at the start of a trial and are made smaller, where that happens in some number of trials.
 pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
     let shrunk = Run::of(program, key.into()).map(|(_, loaded)| loaded.shrunk).unwrap_or_default();
@@ -166,7 +159,7 @@ pub(in crate::engine) fn stranded(program: &Program, key: TrialKey, trials: u64)
         scenario.agents[agent].name,
         words::number((at.x * 100.0).round() / 100.0),
         words::number((at.y * 100.0).round() / 100.0),
-        moment(scenario, state.ticks[0]),
+        words::moment(scenario.clock, Tick(state.ticks[0])),
     )
 }
 

@@ -33,6 +33,7 @@ use crate::compile::Site;
 use crate::compile::study::World;
 use crate::engine::Threads;
 use crate::kernel::driver::MakeDrivers;
+use crate::replay::Diagnosed;
 use crate::stats::{Counts, clopper_pearson};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -213,7 +214,7 @@ impl Calibrating {
         &self,
         replay: &Replay,
         (threads, drivers): (&Threads, &MakeDrivers),
-    ) -> Result<Calibration, Vec<Diagnostic>> {
+    ) -> Diagnosed<Calibration> {
         let (people, first) = self.people(replay).map_err(|error| vec![error])?;
         let kind = user_kind(replay).unwrap_or_default();
         let judged: Vec<Judged> = monitor(replay, &people, Beyond::Onward, threads)?;
@@ -265,7 +266,7 @@ impl Calibrating {
 }
 
 /// The step and the horizon of the scenario, s, and the fingerprint of a kind, where the model can be compiled first.
-fn kind_of(replay: &Replay, people: &[Instant], kind: &str) -> Result<((f64, f64), String), Vec<Diagnostic>> {
+fn kind_of(replay: &Replay, people: &[Instant], kind: &str) -> Diagnosed<((f64, f64), String)> {
     let study = people.iter().find_map(|instant| replay.study_at(*instant).ok());
     let world = study.as_ref().and_then(|study| study.worlds.get(study.base));
     let of_world = |world: &World| {

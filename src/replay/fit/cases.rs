@@ -8,6 +8,7 @@ use crate::engine::trials::sample::{Followed, Sample, sample};
 use crate::engine::{PreparedWorld, Threads};
 use crate::kernel::driver::MakeDrivers;
 use crate::model::AgentId;
+use crate::replay::Diagnosed;
 use crate::replay::course::Beyond;
 use crate::replay::evaluate::PREDICTED;
 use crate::replay::formulas::targets;
@@ -15,7 +16,6 @@ use crate::replay::instants::Instant;
 use crate::replay::monitor::happened;
 use crate::replay::region::{Fit, HORIZONS};
 use crate::replay::situation::Replay;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::cell::Series;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -71,7 +71,7 @@ impl Cases {
         instants: &[Instant],
         counting: Counting,
         threads: &Threads,
-    ) -> Result<Self, Vec<Diagnostic>> {
+    ) -> Diagnosed<Self> {
         let mut persons: Vec<u32> = instants.iter().map(|one| one.person).collect();
         persons.sort_unstable();
         persons.dedup();
@@ -108,7 +108,7 @@ fn case(
     group: &[Instant],
     (at, number): (u64, &BTreeMap<u32, usize>),
     counting: Counting,
-) -> Result<Option<Case>, Vec<Diagnostic>> {
+) -> Diagnosed<Option<Case>> {
     let Some(user) = group.first().copied() else { return Ok(None) };
     let Some(study) = replay.study_if_placed(user)? else { return Ok(None) };
     let targets = targets(&study);

@@ -12,6 +12,7 @@ use crate::compile::Files;
 use crate::compile::Setting;
 use crate::data::tracks::Recording;
 use crate::model::Scene;
+use crate::replay::Diagnosed;
 use crate::syntax::ast::ScenarioFile;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Source;
@@ -79,11 +80,7 @@ const OF_FRAMES: [(&str, &str); 2] = [("people", ""), ("mean_speed", "m/s")];
 ///
 /// # Errors
 /// What is wrong with the scene or with a number; a recording without frames between the times.
-pub fn measure(
-    recording: &Recording,
-    ground: &mut Ground,
-    options: &Measuring,
-) -> Result<Measured, Vec<Diagnostic>> {
+pub fn measure(recording: &Recording, ground: &mut Ground, options: &Measuring) -> Diagnosed<Measured> {
     let frames = frames(recording, options.between);
     let Some(first) = frames.first().copied() else {
         let said = "the recording has no frame between these times";

@@ -9,6 +9,7 @@ use crate::data::tracks::Recording;
 use crate::kernel::{Code, Program, Readings, Run};
 use crate::logic::{Root, Term, TermId};
 use crate::model::{AgentId, Scene};
+use crate::replay::Diagnosed;
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code as ErrorCode;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -46,7 +47,7 @@ impl Prepared {
         ground: &mut Ground,
         options: &Measuring,
         frames: usize,
-    ) -> Result<Self, Vec<Diagnostic>> {
+    ) -> Diagnosed<Self> {
         ground.files.columns = Some(recording.columns().map(str::to_owned).collect());
         let people = recording.people().len().max(1);
         let (step, radius) = (recording.step(), options.radius);
@@ -102,11 +103,7 @@ impl Prepared {
 type Asked = (World, Vec<(usize, String)>);
 
 /// The world of a scenario, with the queries of a source.
-fn world_of(
-    scenario: &ScenarioFile,
-    ground: &Ground,
-    queries: Option<&Source>,
-) -> Result<Asked, Vec<Diagnostic>> {
+fn world_of(scenario: &ScenarioFile, ground: &Ground, queries: Option<&Source>) -> Diagnosed<Asked> {
     let properties: Vec<_> = queries.iter().map(|source| parse_properties(source)).collect();
     let wrong = |found: &[Diagnostic]| -> Vec<Diagnostic> {
         found.iter().filter(|one| one.severity == Severity::Error).cloned().collect()
@@ -194,7 +191,7 @@ pub(super) struct Watched<'p> {
 
 impl<'p> Watched<'p> {
     /// Before the first frame.
-    pub(super) fn new(recording: &Recording, prepared: &'p Prepared) -> Result<Self, Vec<Diagnostic>> {
+    pub(super) fn new(recording: &Recording, prepared: &'p Prepared) -> Diagnosed<Self> {
         let run = Run::given(&prepared.program, TrialKey::default())
             .map_err(|_| vec![Diagnostic::placeless(ErrorCode::E0705, "the scene cannot be shown")])?;
         let all = recording.people().iter().enumerate();
