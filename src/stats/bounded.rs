@@ -2,7 +2,8 @@
 
 use super::invalid::Invalid;
 use super::spec::Range;
-use super::{Interval, Mean, Tail};
+use super::{Intake, Interval, Mean, Tail};
+use std::ops::Deref;
 
 /// An estimator of one of the two.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +12,17 @@ pub enum Bounded {
     Mean(Mean),
     /// The mean of the largest share.
     Tail(Tail),
+}
+
+impl Deref for Bounded {
+    type Target = Intake;
+
+    fn deref(&self) -> &Intake {
+        match self {
+            Self::Mean(mean) => mean,
+            Self::Tail(tail) => tail,
+        }
+    }
 }
 
 impl Bounded {
@@ -75,38 +87,6 @@ impl Bounded {
         match self {
             Self::Mean(mean) => mean.splits(theta),
             Self::Tail(tail) => tail.splits(theta),
-        }
-    }
-
-    /// Trials read, unresolved among them, and values that were clipped.
-    pub const fn read(&self) -> (u64, u64, u64) {
-        match self {
-            Self::Mean(mean) => mean.read(),
-            Self::Tail(tail) => tail.read(),
-        }
-    }
-
-    /// Whether it has stopped.
-    pub const fn finished(&self) -> bool {
-        match self {
-            Self::Mean(mean) => mean.finished(),
-            Self::Tail(tail) => tail.finished(),
-        }
-    }
-
-    /// Whether the number of trials is fixed beforehand.
-    pub const fn is_fixed(&self) -> bool {
-        match self {
-            Self::Mean(mean) => mean.is_fixed(),
-            Self::Tail(tail) => tail.is_fixed(),
-        }
-    }
-
-    /// The number of trials after which it has surely stopped.
-    pub const fn limit(&self) -> u64 {
-        match self {
-            Self::Mean(mean) => mean.limit(),
-            Self::Tail(tail) => tail.limit(),
         }
     }
 

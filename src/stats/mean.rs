@@ -3,9 +3,10 @@
 //! at 0.8 of the error, capped by Hoeffding's bound at the other 0.2; or at the whole of the error, where there
 //! is no cap. Or, at Okamoto's size, Hoeffding's interval alone, at the whole of the error.
 
-use super::invalid::{Invalid, probability, range};
-use super::{Coverage, Interval};
+use super::invalid::{Invalid, range};
+use super::{Coverage, Intake, Interval};
 use crate::base::math;
+use std::ops::Deref;
 
 /// The share of the error for the sequence; the rest is for the cap.
 const SEQUENCE_SHARE: f64 = 0.8;
@@ -74,40 +75,39 @@ impl Sequence {
 /// unless they lie so far apart that this is not worth it, or the largest number of trials comes before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mean {
-    low: f64,
-    high: f64,
-    epsilon: Option<f64>,
-    delta: f64,
+    intake: Intake,
     /// The part of the error that is for the cap.
     cap: f64,
     /// Half-width of the interval at the planned number of trials, over the range, where there is a plan.
     planned: Option<f64>,
-    limit: u64,
     lower: Sequence,
     /// The reading with unresolved trials at the upper end, once there are any.
     upper: Option<Sequence>,
-    read: u64,
-    unresolved: u64,
-    clipped: u64,
-    finished: bool,
+}
+
+impl Deref for Mean {
+    type Target = Intake;
+
+    fn deref(&self) -> &Intake {
+        &self.intake
+    }
 }
 
 impl Mean {
     /// Values in [low, high], half-width `epsilon` in the same unit, error `delta`.
     pub fn within(low: f64, high: f64, epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        let mut mean = Self::new(low, high, delta, (1.0 - SEQUENCE_SHARE) * delta, None)?;
+        let intake = Intake::new(low, high, delta, 0)?;
         let part = range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?;
-        mean.epsilon = Some(part);
-        mean.limit = super::okamoto::size(part, mean.cap);
-        Ok(mean)
+        let cap = (1.0 - SEQUENCE_SHARE) * delta;
+        let limit = super::okamoto::size(part, cap);
+        Ok(Self::new(Intake { epsilon: Some(part), limit, ..intake }, cap, None))
     }
 
     /// Values in [low, high], a fixed number of trials, error `delta`.
     pub fn fixed(low: f64, high: f64, trials: u64, delta: f64) -> Result<Self, Invalid> {
         range("trials", trials as f64, 1.0, 1e15)?;
-        let mut mean = Self::new(low, high, delta, (1.0 - SEQUENCE_SHARE) * delta, Some(trials))?;
-        mean.limit = trials;
-        Ok(mean)
+        let intake = Intake::new(low, high, delta, trials)?;
+        Ok(Self::new(intake, (1.0 - SEQUENCE_SHARE) * delta, Some(trials)))
     }
 
     /// Values in [low, high], Okamoto's number of trials for half-width `epsilon` in the same unit at error `delta`: the
@@ -115,47 +115,26 @@ impl Mean {
     pub fn planned(low: f64, high: f64, epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         let part = range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?;
         let trials = super::okamoto::size(part, delta);
-        let mut mean = Self::new(low, high, delta, 0.0, Some(trials))?;
-        mean.limit = trials;
-        mean.planned = Some(part);
-        Ok(mean)
+        let intake = Intake::new(low, high, delta, trials)?;
+        Ok(Self { planned: Some(part), ..Self::new(intake, 0.0, Some(trials)) })
     }
 
     /// Values in [low, high], error `delta`, as many trials as somebody shows it: the bets are for all times alike, so
     /// that the interval may be looked at after each trial and is narrow at small numbers of them too.
     pub fn running(low: f64, high: f64, delta: f64) -> Result<Self, Invalid> {
-        let mut mean = Self::new(low, high, delta, 0.0, None)?;
-        mean.limit = u64::MAX;
-        Ok(mean)
+        Ok(Self::new(Intake::new(low, high, delta, u64::MAX)?, 0.0, None))
     }
 
-    fn new(low: f64, high: f64, delta: f64, cap: f64, aim: Option<u64>) -> Result<Self, Invalid> {
-        probability("delta", delta)?;
-        if !(low < high && (high - low).is_finite()) {
-            return Err(Invalid::Order { low_name: "low", low, high_name: "high", high });
-        }
-        Ok(Self {
-            low,
-            high,
-            epsilon: None,
-            delta,
-            cap,
-            planned: None,
-            limit: 0,
-            lower: Sequence::new(delta - cap, aim),
-            upper: None,
-            read: 0,
-            unresolved: 0,
-            clipped: 0,
-            finished: false,
-        })
+    fn new(intake: Intake, cap: f64, aim: Option<u64>) -> Self {
+        let lower = Sequence::new(intake.delta - cap, aim);
+        Self { intake, cap, planned: None, lower, upper: None }
     }
 
     /// Reads the next value, `None` (or NaN) if it is unresolved; true once finished.
     pub fn observe(&mut self, value: Option<f64>) -> bool {
         match value.filter(|x| !x.is_nan()) {
             Some(value) => {
-                self.clipped += u64::from(!self.finished && (value < self.low || value > self.high));
+                self.intake.clipped += u64::from(!self.finished && (value < self.low || value > self.high));
                 self.read_ends((value, value))
             }
             None => self.observe_between((self.low, self.high)),
@@ -165,7 +144,7 @@ impl Mean {
     /// Reads an unresolved value, of which it is known between which ends it lies; true once finished.
     pub fn observe_between(&mut self, ends: (f64, f64)) -> bool {
         if !self.finished {
-            self.unresolved += 1;
+            self.intake.unresolved += 1;
             if self.upper.is_none() {
                 self.upper = Some(self.lower.clone());
             }
@@ -177,7 +156,7 @@ impl Mean {
         if self.finished {
             return true;
         }
-        self.read += 1;
+        self.intake.read += 1;
         let (low, high) = (self.low, self.high);
         let push = |sequence: &mut Sequence, x: f64| {
             let x = math::at_most(math::at_least(x, low), high);
@@ -187,7 +166,7 @@ impl Mean {
         if let Some(upper) = &mut self.upper {
             push(upper, ends.1);
         }
-        self.finished = self.lower.n >= self.limit || self.epsilon.is_some_and(|e| self.is_narrow(e));
+        self.intake.finished = self.lower.n >= self.limit || self.epsilon.is_some_and(|e| self.is_narrow(e));
         self.finished
     }
 
@@ -202,30 +181,10 @@ impl Mean {
         0.5 * (high - low) <= epsilon || (radius <= epsilon && reach <= epsilon && apart > epsilon)
     }
 
-    /// Whether it has stopped.
-    pub const fn finished(&self) -> bool {
-        self.finished
-    }
-
-    /// Whether the number of trials is fixed beforehand.
-    pub const fn is_fixed(&self) -> bool {
-        self.epsilon.is_none() && self.limit < u64::MAX
-    }
-
-    /// The number of trials after which it has surely stopped.
-    pub const fn limit(&self) -> u64 {
-        self.limit
-    }
-
     /// The largest number of trials that follows from a width, for reports.
     pub fn numbers(&self) -> Option<(&'static str, f64)> {
         let name = if self.epsilon.is_some() { "cap" } else { "trials" };
         (self.epsilon.is_some() || self.planned.is_some()).then_some((name, self.limit as f64))
-    }
-
-    /// Trials read, unresolved among them, and values that were clipped.
-    pub const fn read(&self) -> (u64, u64, u64) {
-        (self.read, self.unresolved, self.clipped)
     }
 
     /// The means of both readings; the same without unresolved trials.

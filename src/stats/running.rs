@@ -42,6 +42,13 @@ impl Running {
         }
     }
 
+    /// Reads the next trials.
+    pub fn observe_all(&mut self, values: &[Option<f64>]) {
+        for value in values {
+            self.observe(*value);
+        }
+    }
+
     /// Trials read.
     pub fn trials(&self) -> u64 {
         match self {

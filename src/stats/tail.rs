@@ -21,8 +21,9 @@
 
 use super::bets::{geometric, log_mean};
 use super::invalid::{Invalid, probability, range};
-use super::{Coverage, Interval};
+use super::{Coverage, Intake, Interval};
 use crate::base::math;
+use std::ops::Deref;
 
 /// Bets of the mixture, as shares of the largest that cannot lose all.
 const BETS: usize = 16;
@@ -45,59 +46,45 @@ const MOST_PARTS: usize = 400;
 /// lower end of the interval, and as the upper end for its upper end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tail {
+    intake: Intake,
     share: f64,
-    low: f64,
-    high: f64,
-    /// Half width to stop at, over the range.
-    epsilon: Option<f64>,
-    delta: f64,
-    limit: u64,
     /// The least and the greatest that each value can be, over the range; and the quantile of those before it, where the
     /// trial is bet on.
     values: Vec<(f64, f64, Option<f64>)>,
     quantile: Option<f64>,
     /// The number of trials at which the quantile is next found, and at which the interval is next looked at.
     next: (usize, usize),
-    unresolved: u64,
-    clipped: u64,
-    finished: bool,
+}
+
+impl Deref for Tail {
+    type Target = Intake;
+
+    fn deref(&self) -> &Intake {
+        &self.intake
+    }
 }
 
 impl Tail {
     /// The mean of the largest `share` of values in [low, high], to half width `epsilon` in the same unit, error `delta`.
     pub fn within((low, high): (f64, f64), share: f64, epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         let mut tail = Self::running((low, high), share, delta)?;
-        tail.epsilon = Some(range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?);
+        tail.intake.epsilon = Some(range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?);
         Ok(tail)
     }
 
     /// The same of a fixed number of trials.
     pub fn fixed((low, high): (f64, f64), share: f64, trials: u64, delta: f64) -> Result<Self, Invalid> {
         range("trials", trials as f64, 1.0, 1e9)?;
-        Ok(Self { limit: trials, ..Self::running((low, high), share, delta)? })
+        let mut tail = Self::running((low, high), share, delta)?;
+        tail.intake.limit = trials;
+        Ok(tail)
     }
 
     /// The same of as many trials as somebody shows it.
     pub fn running((low, high): (f64, f64), share: f64, delta: f64) -> Result<Self, Invalid> {
-        probability("delta", delta)?;
+        let intake = Intake::new(low, high, delta, u64::MAX)?;
         probability("share", share)?;
-        if !(low < high && (high - low).is_finite()) {
-            return Err(Invalid::Order { low_name: "low", low, high_name: "high", high });
-        }
-        Ok(Self {
-            share,
-            low,
-            high,
-            epsilon: None,
-            delta,
-            limit: u64::MAX,
-            values: Vec::new(),
-            quantile: None,
-            next: (FIRST_BET, 1),
-            unresolved: 0,
-            clipped: 0,
-            finished: false,
-        })
+        Ok(Self { intake, share, values: Vec::new(), quantile: None, next: (FIRST_BET, 1) })
     }
 
     /// Reads the next value, `None` (or NaN) if it is unresolved; true once finished.
@@ -110,24 +97,25 @@ impl Tail {
             self.quantile = Some(self.quantile_so_far());
             self.next.0 = n + n / 8;
         }
-        let scaled = |value: f64| (value - self.low) / (self.high - self.low);
+        let (low, high) = (self.low, self.high);
         let (least, greatest) = match value.filter(|value| !value.is_nan()) {
             Some(value) => {
-                self.clipped += u64::from(value < self.low || value > self.high);
-                let value = scaled(math::at_most(math::at_least(value, self.low), self.high));
+                self.intake.clipped += u64::from(value < low || value > high);
+                let value = (math::at_most(math::at_least(value, low), high) - low) / (high - low);
                 (value, value)
             }
             None => {
-                self.unresolved += 1;
+                self.intake.unresolved += 1;
                 (0.0, 1.0)
             }
         };
         self.values.push((least, greatest, self.quantile));
-        self.finished = self.values.len() as u64 >= self.limit;
+        self.intake.read += 1;
+        self.intake.finished = self.read >= self.limit;
         if let Some(epsilon) = self.epsilon
             && let Some(interval) = self.look()
         {
-            self.finished |= self.is_narrow(interval, epsilon);
+            self.intake.finished |= self.is_narrow(interval, epsilon);
         }
         self.finished
     }
@@ -148,26 +136,6 @@ impl Tail {
         }
         self.next.1 = n + 1 + n / 20;
         Some(self.interval())
-    }
-
-    /// Whether it has stopped.
-    pub const fn finished(&self) -> bool {
-        self.finished
-    }
-
-    /// The number of trials after which it has surely stopped.
-    pub const fn limit(&self) -> u64 {
-        self.limit
-    }
-
-    /// Whether the number of trials is fixed beforehand.
-    pub const fn is_fixed(&self) -> bool {
-        self.epsilon.is_none() && self.limit < u64::MAX
-    }
-
-    /// Trials read, unresolved among them, and values that were clipped.
-    pub const fn read(&self) -> (u64, u64, u64) {
-        (self.values.len() as u64, self.unresolved, self.clipped)
     }
 
     /// The estimates of both readings of unresolved trials; the same without any.

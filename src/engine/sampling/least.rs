@@ -143,7 +143,7 @@ impl Contest for Least {
 
     fn feed(&mut self, column: usize, columns: &[Vec<Option<f64>>]) -> Result<(), Invalid> {
         let running = &mut self.columns[column];
-        columns.iter().take(1).flatten().for_each(|value| running.observe(*value));
+        running.observe_all(columns.first().map_or(&[], Vec::as_slice));
         self.known[column] = (running.estimate(), running.interval());
         self.missing = self.missing.saturating_sub(1);
         if self.missing == 0 {

@@ -3,7 +3,7 @@
 
 use crate::base::special::{beta_tails, normal_quantile};
 use crate::stats::invalid::Invalid;
-use crate::stats::sprt::Region;
+use crate::stats::sprt::Indifference;
 use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, bisection};
 
 /// P >= theta + indifference against P <= theta - indifference by a fixed number of trials.
@@ -11,7 +11,7 @@ use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, bisectio
 /// It stops as soon as the rest cannot change the decision, which changes neither decision nor errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    region: Region,
+    region: Indifference,
     size: u64,
     needed: u64,
 }
@@ -46,8 +46,8 @@ fn critical(n: u64, p: f64, alpha: f64) -> u64 {
 impl Plan {
     /// Parameters as those of the SPRT; the indifference must be at least 0.0005.
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
-        let region = Region::new(theta, indifference, 0.000_5, (alpha, beta))?;
-        let Region { low, high, .. } = region;
+        let region = Indifference::new(theta, indifference, 0.000_5, (alpha, beta))?;
+        let Indifference { low, high, .. } = region;
         // The best test with randomisation only improves with n, so the smallest n at which it meets both
         // bounds is found by bisection; the smallest plan without randomisation lies at most a little
         // beyond.

@@ -12,14 +12,14 @@ pub(super) const SLACK: f64 = 1e-9;
 
 /// The indifference region of a test, and the errors at its ends.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Region {
+pub(super) struct Indifference {
     pub(super) low: f64,
     pub(super) high: f64,
     alpha: f64,
     beta: f64,
 }
 
-impl Region {
+impl Indifference {
     /// Refuses a region that leaves (0, 1), and an indifference below `least`.
     pub(super) fn new(
         theta: f64,
@@ -49,7 +49,7 @@ impl Region {
 /// P >= theta + indifference against P <= theta - indifference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprt {
-    region: Region,
+    region: Indifference,
     /// Log likelihood ratio of `low` over `high` of one success (negative) and of one failure.
     per_success: f64,
     per_failure: f64,
@@ -62,7 +62,7 @@ impl Sprt {
     /// `alpha` bounds the error of deciding `Below` though P >= theta + indifference, `beta` that of
     /// deciding `Above` though P <= theta - indifference. Refuses a region that leaves (0, 1).
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
-        let region = Region::new(theta, indifference, 0.0, (alpha, beta))?;
+        let region = Indifference::new(theta, indifference, 0.0, (alpha, beta))?;
         Ok(Sequential::new(Self {
             per_success: math::ln(region.low / region.high),
             per_failure: math::ln((1.0 - region.low) / (1.0 - region.high)),

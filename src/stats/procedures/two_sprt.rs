@@ -5,13 +5,13 @@
 
 use crate::base::math;
 use crate::stats::invalid::Invalid;
-use crate::stats::sprt::{Region, SLACK};
+use crate::stats::sprt::{Indifference, SLACK};
 use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test, Weight, Weights};
 
 /// P >= theta + indifference against P <= theta - indifference, with a closed region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoSprt {
-    region: Region,
+    region: Indifference,
     /// Log likelihood ratios of theta over the high end, per success and failure.
     over_high: (f64, f64),
     /// Log likelihood ratios of theta over the low end, per success and failure.
@@ -24,7 +24,7 @@ pub struct TwoSprt {
 impl TwoSprt {
     /// Parameters as those of the SPRT; the indifference must be at least 0.00001.
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
-        let region = Region::new(theta, indifference, 1e-5, (alpha, beta))?;
+        let region = Indifference::new(theta, indifference, 1e-5, (alpha, beta))?;
         let over = |end: f64| (math::ln(theta / end), math::ln((1.0 - theta) / (1.0 - end)));
         let (over_high, over_low) = (over(region.high), over(region.low));
         let thresholds = (-math::ln(alpha) + SLACK, -math::ln(beta) + SLACK);

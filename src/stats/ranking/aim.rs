@@ -68,9 +68,7 @@ impl Aim {
             Self::Mean(table, range) => table.push(arm, &Scores::outcomes(scores, *range)),
             Self::Tail { arms, .. } => {
                 let (running, interval) = &mut arms[arm];
-                for score in scores {
-                    running.observe(*score);
-                }
+                running.observe_all(scores);
                 *interval = running.interval();
             }
         }

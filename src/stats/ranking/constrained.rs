@@ -15,7 +15,7 @@
 
 use super::aim::{Aim, Goal};
 use super::contest::{Choice, Contest};
-use super::rounds::{Completed, Rounds, Share};
+use super::rounds::{Completed, RankingRounds, Share};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
 use crate::stats::{Interval, Running};
@@ -47,7 +47,7 @@ pub struct Constrained {
     deviations: Vec<f64>,
     scale: f64,
     leader: usize,
-    rounds: Rounds,
+    rounds: RankingRounds,
     finished: bool,
 }
 
@@ -84,7 +84,7 @@ impl Constrained {
             epsilon,
             scale: high - low,
             leader: 0,
-            rounds: Rounds::new(arms, word, u64::MAX),
+            rounds: RankingRounds::new(arms, word, u64::MAX),
             finished: false,
             deviations,
         })
@@ -183,7 +183,7 @@ impl Contest for Constrained {
         let completed = self.rounds.count(arm, scores.len())?;
         self.aim.push(arm, scores);
         for (side, values) in self.sides.iter_mut().zip(others) {
-            values.iter().for_each(|value| side[arm].observe(*value));
+            side[arm].observe_all(values);
         }
         if completed >= Completed::Share {
             self.learn(arm);

@@ -1,7 +1,7 @@
 //! Okamoto's bound on each arm at half of epsilon: the baseline, with a joint guarantee.
 
 use super::contest::{Choice, Contest};
-use super::rounds::{Completed, Rounds, Share};
+use super::rounds::{Completed, RankingRounds, Share};
 use super::{Booleans, Table as _};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
@@ -16,7 +16,7 @@ pub struct Each {
     size: u64,
     /// Successes and trials of each arm with unresolved ones as failures, and unresolved ones.
     arms: Vec<(Counts, u64)>,
-    rounds: Rounds,
+    rounds: RankingRounds,
     deviations: Vec<f64>,
 }
 
@@ -39,7 +39,7 @@ impl Each {
             delta: delta / arms as f64,
             size,
             arms: vec![(Counts::default(), 0); arms],
-            rounds: Rounds::new(arms, word, size),
+            rounds: RankingRounds::new(arms, word, size),
             deviations: Vec::new(),
         })
     }

@@ -24,7 +24,7 @@
 
 use super::aim::{Aim, Goal};
 use super::contest::{Choice, Contest};
-use super::rounds::{Completed, Rounds, Share};
+use super::rounds::{Completed, RankingRounds, Share};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
 use crate::stats::{Interval, Running};
@@ -55,7 +55,7 @@ pub struct Front {
     /// The arm that covered each arm that is left out.
     cover: Vec<Option<usize>>,
     threshold: f64,
-    rounds: Rounds,
+    rounds: RankingRounds,
     finished: bool,
 }
 
@@ -79,7 +79,7 @@ impl Front {
             standing: vec![if arms == 1 { Standing::In } else { Standing::Open }; arms],
             cover: vec![None; arms],
             threshold: math::ln(misleading / bets) + 1e-9,
-            rounds: Rounds::new(if arms == 1 { 0 } else { arms }, word, u64::MAX),
+            rounds: RankingRounds::new(if arms == 1 { 0 } else { arms }, word, u64::MAX),
             finished: arms == 1,
         })
     }
@@ -165,7 +165,7 @@ impl Contest for Front {
             aim.push(arm, scores);
         }
         for (side, values) in self.sides.iter_mut().zip(columns.iter().skip(1)) {
-            values.iter().for_each(|value| side[arm].observe(*value));
+            side[arm].observe_all(values);
         }
         if completed == Completed::Round {
             self.decide();

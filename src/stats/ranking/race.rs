@@ -16,7 +16,7 @@
 //! is certified by its own trials.
 
 use super::contest::{Choice, Contest};
-use super::rounds::{Completed, Rounds, Share};
+use super::rounds::{Completed, RankingRounds, Share};
 use super::{Table, bet, certified, gap};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
@@ -42,7 +42,7 @@ pub struct Race<T> {
     allocation: Allocation,
     live: Vec<usize>,
     leader: usize,
-    rounds: Rounds,
+    rounds: RankingRounds,
     arms: usize,
     /// Arms that do not pass yet, with the evidence: room to work.
     failing: Vec<(usize, f64)>,
@@ -78,7 +78,7 @@ impl<T: Table> Race<T> {
             allocation,
             live: (0..arms).collect(),
             leader: 0,
-            rounds: Rounds::new(if alone { 0 } else { arms }, word, u64::MAX),
+            rounds: RankingRounds::new(if alone { 0 } else { arms }, word, u64::MAX),
             arms,
             failing: Vec::new(),
             deviations: Vec::new(),

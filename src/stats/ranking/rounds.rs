@@ -23,7 +23,7 @@ pub(super) enum Completed {
 
 /// The present round.
 #[derive(Clone, Debug)]
-pub(super) struct Rounds {
+pub(super) struct RankingRounds {
     /// Trials that an arm gets in a round.
     pub(super) word: u64,
     /// Trials that an arm gets in all.
@@ -31,7 +31,7 @@ pub(super) struct Rounds {
     pending: Vec<Share>,
 }
 
-impl Rounds {
+impl RankingRounds {
     /// The first round of so many arms. An arm gets `word` trials in a round, and no more than `most` in all.
     pub(super) fn new(arms: usize, word: u64, most: u64) -> Self {
         let mut rounds = Self { word, most, pending: Vec::new() };

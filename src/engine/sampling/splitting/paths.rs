@@ -42,18 +42,18 @@ impl PathResult {
 pub(super) type Ended = Vec<(usize, Result<PathResult, Fault>)>;
 
 /// The paths of all lanes.
-type Lanewise = [PathResult; LANES];
+type PathLanes = [PathResult; LANES];
 
 /// What watches the paths of all lanes.
-trait Watching {
+trait PathWatch {
     /// A path begins in a lane.
     fn start(&mut self, lane: usize);
 
     /// Looks at the present states, as a monitor does.
-    fn observe(&mut self, paths: &mut Lanewise, run: &Run<'_>, fresh: Mask) -> Mask;
+    fn observe(&mut self, paths: &mut PathLanes, run: &Run<'_>, fresh: Mask) -> Mask;
 
     /// Judges the states before, as a monitor does.
-    fn follow(&mut self, _: &mut Lanewise, _: &Run<'_>, _moved: Mask) -> Mask {
+    fn follow(&mut self, _: &mut PathLanes, _: &Run<'_>, _moved: Mask) -> Mask {
         Mask::NONE
     }
 }
@@ -61,8 +61,8 @@ trait Watching {
 /// The paths of all lanes, and those that ended.
 pub(super) struct Paths<'s> {
     prepared: &'s PreparedWorld,
-    watching: Box<dyn Watching + Send + 's>,
-    lanes: Lanewise,
+    watch: Box<dyn PathWatch + Send + 's>,
+    lanes: PathLanes,
     /// Paths that came to an end.
     pub(super) ended: Ended,
 }
@@ -70,27 +70,27 @@ pub(super) struct Paths<'s> {
 impl<'s> Paths<'s> {
     /// For a column that is a formula, and one that is the robustness that is its level.
     pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
-        let watching: Box<dyn Watching + Send + 's> = if prepared.program.scenario.clock.is_jumps() {
+        let watch: Box<dyn PathWatch + Send + 's> = if prepared.program.scenario.clock.is_jumps() {
             Box::new(EventPaths::new(prepared, columns)?)
         } else {
             Box::new(StepPaths { group: ColumnGroup::of(prepared, &columns)? })
         };
-        Ok(Self { prepared, watching, lanes: Default::default(), ended: Vec::new() })
+        Ok(Self { prepared, watch, lanes: Default::default(), ended: Vec::new() })
     }
 }
 
 impl Monitors for Paths<'_> {
     fn start(&mut self, lane: usize, _: bool) {
         self.lanes[lane] = PathResult::default();
-        self.watching.start(lane);
+        self.watch.start(lane);
     }
 
     fn observe(&mut self, run: &Run<'_>, fresh: Mask) -> Mask {
-        self.watching.observe(&mut self.lanes, run, fresh)
+        self.watch.observe(&mut self.lanes, run, fresh)
     }
 
     fn follow(&mut self, run: &Run<'_>, moved: Mask) -> Mask {
-        self.watching.follow(&mut self.lanes, run, moved)
+        self.watch.follow(&mut self.lanes, run, moved)
     }
 
     fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
@@ -119,12 +119,12 @@ struct StepPaths {
     group: ColumnGroup,
 }
 
-impl Watching for StepPaths {
+impl PathWatch for StepPaths {
     fn start(&mut self, lane: usize) {
         self.group.start(lane);
     }
 
-    fn observe(&mut self, paths: &mut Lanewise, run: &Run<'_>, _: Mask) -> Mask {
+    fn observe(&mut self, paths: &mut PathLanes, run: &Run<'_>, _: Mask) -> Mask {
         let state = run.state();
         let occupied = run.occupied();
         let gone = if self.group.follows[0] { state.queues.reused } else { Mask::NONE };
@@ -216,12 +216,12 @@ impl EventPaths {
     }
 }
 
-impl Watching for EventPaths {
+impl PathWatch for EventPaths {
     fn start(&mut self, lane: usize) {
         self.since[lane] = 0.0;
     }
 
-    fn observe(&mut self, _: &mut Lanewise, run: &Run<'_>, fresh: Mask) -> Mask {
+    fn observe(&mut self, _: &mut PathLanes, run: &Run<'_>, fresh: Mask) -> Mask {
         if !fresh.is_empty() {
             self.view.look(run.state(), &mut self.seen);
         }
@@ -235,7 +235,7 @@ impl Watching for EventPaths {
         Mask::NONE
     }
 
-    fn follow(&mut self, paths: &mut Lanewise, run: &Run<'_>, moved: Mask) -> Mask {
+    fn follow(&mut self, paths: &mut PathLanes, run: &Run<'_>, moved: Mask) -> Mask {
         self.view.look(run.state(), &mut self.seen);
         let mut over = run.ended();
         for lane in (run.occupied() & !over).iter() {
