@@ -48,10 +48,7 @@ impl Answers<'_> {
             Some(First { prepared, column, item: Item { advice: None, index }, settings })
         });
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
-        let label = |settings: &[(String, String)]| {
-            settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
-        };
-        let labels = [label(&settings[0]), label(&settings[1])];
+        let labels = [words::settings(&settings[0]), words::settings(&settings[1])];
         let name = words::measured(query, first, joined.clipped);
         if says_something(&query.ask, f64::NEG_INFINITY, (result.low, result.high)) {
             result.certifies = format!(

@@ -56,14 +56,11 @@ fn check(parts: &[(&Query, QueryResult)]) -> Option<QueryResult> {
         (0..parts.len()).min_by(|a, b| rank(*a).cmp(&rank(*b)).then(figure(*a).total_cmp(&figure(*b))))?;
     let under = |at: usize| {
         let result = &parts[at].1;
+        let (low, high) = (result.low, result.high);
         UnderOne {
             setting: (every.name.clone(), every.values[at].clone()),
             verdict: result.verdict,
-            figure: Interval {
-                estimate: result.estimate.unwrap_or(f64::NAN),
-                low: result.low,
-                high: result.high,
-            },
+            figure: Interval { estimate: result.estimate.unwrap_or(f64::NAN), low, high },
             counts: result.consumed.counts,
             best: None,
         }

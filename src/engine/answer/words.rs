@@ -169,6 +169,11 @@ pub(in crate::engine) fn moment(clock: Clock, at: Tick) -> String {
     }
 }
 
+/// Values of parameters, as the label of a side.
+pub(in crate::engine) fn settings(settings: &[(String, String)]) -> String {
+    settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+}
+
 /// Of a condition; "holds" and "fails" are said of what was asked.
 pub(in crate::engine) const fn truth(value: bool) -> &'static str {
     if value { "is true" } else { "is false" }

@@ -19,6 +19,7 @@ use crate::stats::Levels;
 use crate::stats::calibration::Patience;
 use crate::trials::budget::Budget;
 use crate::trials::cell::Item;
+use std::collections::BTreeSet;
 
 /// A trial that takes so many times as many steps for one column as for another holds that one up.
 const MUCH_LONGER: f64 = 16.0;
@@ -308,10 +309,7 @@ impl<'q> EstimateSampling<'q> {
         };
         let least = open.iter().map(|entry| steps(entry)).fold(f64::INFINITY, math::at_most);
         let slow = open.iter().filter(|entry| steps(entry) > MUCH_LONGER * least);
-        let mut slow: Vec<usize> = slow.map(|entry| entry.column).collect();
-        slow.sort_unstable();
-        slow.dedup();
-        slow
+        columns(slow.copied())
     }
 
     /// Shows a round to the entries; the first trial in which somebody sees that the model is wrong. None of them
@@ -343,10 +341,7 @@ impl<'q> EstimateSampling<'q> {
 
 /// Columns that some entries read.
 fn columns<'e, 'q: 'e>(entries: impl Iterator<Item = &'e EstimateEntry<'q>>) -> Vec<usize> {
-    let mut columns: Vec<usize> = entries.map(|entry| entry.column).collect();
-    columns.sort_unstable();
-    columns.dedup();
-    columns
+    entries.map(|entry| entry.column).collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// Time is up, or somebody interrupted: what is known stays known.

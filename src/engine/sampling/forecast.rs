@@ -103,6 +103,13 @@ impl PilotStatistics {
         guesses
     }
 
+    /// The fewest trials, those that the readings themselves foretell, and the most.
+    fn spread(&self, least: f64, trials: impl Fn(Guess) -> f64) -> [f64; 3] {
+        let likely = trials(self.guess(least));
+        let all = self.guesses(least).into_iter().map(trials);
+        all.fold([likely; 3], |[a, _, b], n| [math::at_most(n, a), likely, math::at_least(n, b)])
+    }
+
     /// Variance; with few trials never far below that of one more reading at distance `least`.
     fn variance(&self, least: f64) -> f64 {
         let n = self.trials().max(1.0);
@@ -129,10 +136,7 @@ pub(super) fn entry(ask: &Ask, procedure: &Procedure, statistics: &PilotStatisti
     };
     let tail = measure.kind.share().unwrap_or(1.0);
     let trials = |guess: Guess| (forecast.trials)(&chosen.values, &Guess { theta, range, tail, ..guess });
-    let likely = trials(statistics.guess(0.1 * range));
-    let all = statistics.guesses(0.1 * range).into_iter().map(trials);
-    let (least, most) =
-        all.fold((likely, likely), |(least, most), n| (math::at_most(n, least), math::at_least(n, most)));
+    let [least, likely, most] = statistics.spread(0.1 * range, trials);
     let whole = |n: f64| (math::at_most(n, 1e18) as u64).clamp(1, limit.unwrap_or(u64::MAX).max(1));
     // Runs of one procedure at one truth scatter as well.
     let (fewer, more) = forecast.scatter;
@@ -156,11 +160,8 @@ const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
 
 /// Pairs that a comparison is likely to take; `statistics` is that of the differences.
 pub(super) fn compare(statistics: &PilotStatistics, range: f64, epsilon: f64, delta: f64) -> Likely {
-    let least = 0.1 * range;
     let of = |guess: Guess| until_narrow(guess.variance, 2.0 * range, epsilon, delta);
-    let likely = of(statistics.guess(least));
-    let all = statistics.guesses(least).into_iter().map(of);
-    let (fewest, most) = all.fold((likely, likely), |(a, b), n| (math::at_most(n, a), math::at_least(n, b)));
+    let [fewest, likely, most] = statistics.spread(0.1 * range, of);
     let whole = |n: f64| math::at_most(n, 1e18) as u64;
     Likely { least: whole(0.4 * fewest), likely: whole(likely), most: whole(2.0 * most) }
 }

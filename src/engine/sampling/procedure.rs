@@ -2,7 +2,7 @@
 
 use crate::compile::study::{Ask, MeasureKind};
 use crate::engine::fault::Fault;
-use crate::engine::outcome::{Curve, CurvePoint, Distribution, Histogram, Interval, Quantile, Step};
+use crate::engine::outcome::{Counts, Curve, CurvePoint, Distribution, Histogram, Interval, Quantile, Step};
 use crate::stats::calibration::Level;
 use crate::stats::quantile::Sample;
 use crate::stats::ranking::Goal;
@@ -226,13 +226,8 @@ impl Procedure {
             },
             Self::Mean { mean, threshold: Some(theta), .. } => {
                 let interval = mean.interval();
-                if interval.low > *theta {
-                    Some(Decision::Above)
-                } else if interval.high < *theta {
-                    Some(Decision::Below)
-                } else {
-                    None
-                }
+                let above = (interval.low > *theta).then_some(Decision::Above);
+                above.or((interval.high < *theta).then_some(Decision::Below))
             }
             _ => None,
         }
@@ -295,7 +290,7 @@ impl Procedure {
     /// Estimate and interval, and the kind of the interval. `beside` is the error of that beside the verdict of a test.
     pub(in crate::engine) fn interval(
         &mut self,
-        counts: crate::engine::outcome::Counts,
+        counts: Counts,
         beside: f64,
     ) -> Option<(Interval, Coverage, f64)> {
         if counts.trials == 0 {
@@ -439,7 +434,7 @@ pub(in crate::engine) fn around(estimate: f64, interval: stats::Interval) -> Int
 }
 
 /// The confidence sequence of a probability, over both readings of unresolved trials.
-pub(in crate::engine) fn sequence(counts: crate::engine::outcome::Counts, error: f64) -> stats::Interval {
+pub(in crate::engine) fn sequence(counts: Counts, error: f64) -> stats::Interval {
     let resolved = stats::Counts {
         successes: counts.successes,
         failures: counts.trials - counts.successes - counts.unresolved,
@@ -454,7 +449,7 @@ pub(in crate::engine) fn of_mean(mean: &Bounded) -> (f64, stats::Interval) {
 }
 
 /// Share of successes; unresolved trials count half. Of no trials it is not a number.
-pub(in crate::engine) fn share(counts: crate::engine::outcome::Counts) -> f64 {
+pub(in crate::engine) fn share(counts: Counts) -> f64 {
     if counts.trials == 0 {
         // The sign of 0 / 0 is the platform's.
         return f64::NAN;

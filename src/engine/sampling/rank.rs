@@ -16,11 +16,12 @@ use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{Forecast, Likely};
 use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::engine::trials::prepared::PreparedWorld;
+use crate::engine::trials::trial::fault;
 use crate::stats::ranking::{Choice, Contest, Ranking, Share};
 use crate::stats::{self, Bounded};
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Item, Reading, Series};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering;
 
 /// Trials an option gets in a round: traces of crowds are slow.
@@ -94,11 +95,8 @@ pub(in crate::engine) struct RankSampling<'s> {
 
 /// All columns that are asked of an option.
 fn columns(option: &RankOption) -> Vec<usize> {
-    let mut columns: Vec<usize> =
-        std::iter::once(option.target.column).chain(option.beside.iter().copied()).collect();
-    columns.sort_unstable();
-    columns.dedup();
-    columns
+    let all = std::iter::once(&option.target.column).chain(&option.beside);
+    all.copied().collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// What a round runs: the items, and for each share of it their places; and whether the budget cut any share.
@@ -385,12 +383,7 @@ impl<'s> RankSampling<'s> {
                     Some(row) if !broken => {
                         let item = round.items[place];
                         if row.iter().any(|cell| cell.reading == Reading::Faulty) {
-                            let prepared = self.setup.worlds[share.arm];
-                            return Err(crate::engine::trials::trial::fault(
-                                prepared,
-                                item,
-                                self.jobs[0].series,
-                            ));
+                            return Err(fault(self.setup.worlds[share.arm], item, self.jobs[0].series));
                         }
                         let first = &row[columns[0]];
                         self.tallies[share.arm].add(item.index, first, self.range);

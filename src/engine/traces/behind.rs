@@ -2,6 +2,7 @@
 //! comparison and point of a sweep the first few.
 
 use crate::compile::study::{Ask, Query, Study, Target};
+use crate::engine::answer::words;
 use crate::engine::outcome::{CallResult, QueryResult, Witness};
 
 /// How many trials of an option, a side or a point are shown.
@@ -107,11 +108,7 @@ fn arms(query: &Query, result: &QueryResult) -> Vec<Arm> {
             let side = |target: Target, own: &[(String, String)]| Arm {
                 target,
                 advice: None,
-                label: own
-                    .iter()
-                    .map(|(name, value)| format!("{name} = {value}"))
-                    .collect::<Vec<_>>()
-                    .join(", "),
+                label: words::settings(own),
                 settings: [&query.settings, own].concat(),
                 trials,
             };

@@ -6,6 +6,7 @@ use crate::engine::fault::Fault;
 use crate::kernel::start;
 use crate::model::{AgentId, Scenario};
 use crate::syntax::source::Span;
+use std::collections::BTreeSet;
 
 /// Whether everybody in a world can be placed.
 pub fn placeable(world: &World) -> Result<(), Fault> {
@@ -14,9 +15,7 @@ pub fn placeable(world: &World) -> Result<(), Fault> {
 
 /// Whether everybody in the worlds that some queries ask about can be placed; all places where not are told at once.
 pub(in crate::engine) fn all_placeable(study: &Study, asked: &[&Query]) -> Result<(), Fault> {
-    let mut asked: Vec<usize> = asked.iter().flat_map(|query| query.ask.worlds()).collect();
-    asked.sort_unstable();
-    asked.dedup();
+    let asked: BTreeSet<usize> = asked.iter().flat_map(|query| query.ask.worlds()).collect();
     let worlds = asked.into_iter().filter_map(|world| study.worlds.get(world));
     let found = once(worlds.flat_map(|world| crowds(&world.scenario, |agent| world.place_of(agent))));
     if found.is_empty() { Ok(()) } else { Err(Fault::Crowded(found)) }

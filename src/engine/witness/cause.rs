@@ -168,29 +168,26 @@ pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
     let name = |agent: AgentId| {
         scenario.agents.get(agent.0 as usize).map_or("an agent", |agent| agent.name.as_str())
     };
+    let of = |agent: AgentId, said: &str| format!("{} {said}", name(agent));
     match fault {
         start::Fault::Parameter { agent, name: parameter, value } => format!(
             "the drawn `{parameter}` of {} is {}, which is invalid; truncate the distribution: `normal(…) in low .. high`",
             name(agent),
             words::brief(value, "")
         ),
-        start::Fault::Nowhere { agent } => {
-            format!("{} has no free place to start; use a larger start area", name(agent))
-        }
+        start::Fault::Nowhere { agent } => of(agent, "has no free place to start; use a larger start area"),
         start::Fault::Far { agent } => {
-            format!("{} has no free place within the given distance; use a larger distance", name(agent))
+            of(agent, "has no free place within the given distance; use a larger distance")
         }
         start::Fault::Inside { agent } => {
-            format!("{} has no place outside obstacles and walls; use a larger start area", name(agent))
+            of(agent, "has no place outside obstacles and walls; use a larger start area")
         }
         start::Fault::Together { agents: (one, other) } => format!(
             "{} and {} have only the same point to start at; use a larger start area",
             name(one),
             name(other)
         ),
-        start::Fault::Order { agent } => {
-            format!("{} starts near an agent that is placed later", name(agent))
-        }
+        start::Fault::Order { agent } => of(agent, "starts near an agent that is placed later"),
         start::Fault::Advice { .. } => String::new(),
     }
 }

@@ -17,7 +17,7 @@ use crate::replay::monitor::happened;
 use crate::replay::region::{Fit, HORIZONS};
 use crate::replay::situation::Replay;
 use crate::trials::cell::Series;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Loss of a position that no trial reaches because all of them fail: that of a density of 1e-9 /m^2.
@@ -72,9 +72,8 @@ impl Cases {
         counting: Counting,
         threads: &Threads,
     ) -> Diagnosed<Self> {
-        let mut persons: Vec<u32> = instants.iter().map(|one| one.person).collect();
-        persons.sort_unstable();
-        persons.dedup();
+        let persons: BTreeSet<u32> = instants.iter().map(|one| one.person).collect();
+        let persons: Vec<u32> = persons.into_iter().collect();
         let together = |a: &Instant, b: &Instant| !counting.by_properties && a.time == b.time;
         let groups: Vec<(u64, &[Instant])> = (0..).zip(instants.chunk_by(together)).collect();
         let number: BTreeMap<u32, usize> = persons.iter().copied().zip(0..).collect();

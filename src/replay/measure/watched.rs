@@ -108,10 +108,9 @@ fn world_of(scenario: &ScenarioFile, ground: &Ground, queries: Option<&Source>) 
     let wrong = |found: &[Diagnostic]| -> Vec<Diagnostic> {
         found.iter().filter(|one| one.severity == Severity::Error).cloned().collect()
     };
-    for (_, found) in &properties {
-        if !wrong(found).is_empty() {
-            return Err(wrong(found));
-        }
+    let errors = properties.iter().map(|(_, found)| wrong(found)).find(|errors| !errors.is_empty());
+    if let Some(errors) = errors {
+        return Err(errors);
     }
     let properties: Vec<_> = properties.into_iter().map(|(file, _)| file).collect();
     let Ground { sources, files, settings, .. } = ground;
