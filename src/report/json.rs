@@ -8,8 +8,9 @@ use super::phrase::front;
 use super::setting;
 use crate::base::random;
 use crate::engine::outcome::{
-    Also, CallResult, Comparison, Counts, CurvePoint, Distribution, Every, Evidence, Finding, Interval, Kind,
-    Method, QueryResult, Ranking, Shows, Side, Snapshot, Standing, UnderOne, Verdict, Witness,
+    Also, CallResult, Comparison, Curve, CurvePoint, Decider, Distribution, Every, Evidence, Finding,
+    Histogram, Interval, Kind, Method, Quantile, QueryResult, RankedOption, Ranking, Shortfall, Shows, Side,
+    Snapshot, Standing, Step, UnderOne, Verdict, Witness,
 };
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -88,161 +89,139 @@ fn finding(finding: &Finding) -> Value {
     })
 }
 
+/// The fields of several objects in one; `null` has none.
+fn joined<const N: usize>(parts: [Value; N]) -> Value {
+    let fields = |part: Value| if let Value::Object(fields) = part { fields } else { Map::new() };
+    Value::Object(parts.into_iter().flat_map(fields).collect())
+}
+
+/// A field that is there only with a value.
+fn optional(key: &str, value: Option<impl Serialize>) -> Value {
+    value.map_or(Value::Null, |value| json!({ key: value }))
+}
+
 /// A result as a JSON value.
 pub(super) fn result(result: &QueryResult) -> Value {
-    let mut object = Map::new();
-    let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
-    put("index", json!(result.asked.index));
-    put("name", json!(result.asked.name));
-    put("query", json!(result.asked.text));
-    put("file", json!(result.asked.file));
-    put("line", json!(result.asked.line));
-    put("settings", setting::object(&result.asked.settings));
-    put("kind", json!(result.asked.kind.name()));
-    put("verdict", json!(result.verdict.map(Verdict::name)));
-    put("certifies", json!(result.certifies));
-    put("horizon", json!(result.asked.horizon));
-    if let Some(given) = &result.asked.given {
-        put("given", json!(given));
-    }
-    put("estimate", maybe(result.estimate));
-    put("low", number(result.low));
-    put("high", number(result.high));
-    put("censored", json!(result.censored.is_some()));
-    put("of", json!(result.of));
-    put("unit", json!(result.unit));
-    put("interval", json!(result.interval));
-    put("method", method(&result.method));
-    for (key, value) in counts(&result.consumed.counts) {
-        put(&key, value);
-    }
-    put("clipped", json!(result.consumed.clipped));
-    put("shrunk", json!(result.consumed.shrunk));
-    if result.consumed.no_way > 0 {
-        put("no_way", json!(result.consumed.no_way));
-    }
-    put("steps", json!(result.consumed.steps));
-    put("stopped_by", json!(result.stopped_by.name()));
-    if let Some(shortfall) = result.shortfall() {
-        put("shortfall", json!(shortfall.name()));
-    }
-    if let Some(Comparison { first, second, difference }) = &result.compare {
-        put("first", side(first));
-        put("second", side(second));
-        put("difference", side(difference));
-    }
-    if let Some(ranking @ Ranking { choice, means, gap, tied, aim, options, is_empty }) = &result.rank {
-        put("choice", json!(choice));
-        if result.asked.kind == Kind::Pareto {
-            put("aim", json!(aim));
-            put("front", front(ranking).collect());
-        }
-        if *is_empty {
-            put("none", json!(true));
-        }
-        if let Some(means) = means {
-            put("means", json!(means));
-        }
-        put("gap", number(*gap));
-        put("tied", json!(tied));
-        let options = options.iter().map(|option| {
-            let mut object = numbered("option", &option.label, &option.value, &option.counts);
-            object.insert("status".into(), json!(option.status.name()));
-            if !option.under.is_empty() {
-                object.insert("under".into(), option.under.iter().map(side).collect());
-            }
-            if !option.also.is_empty() {
-                object.insert("also".into(), option.also.iter().map(also).collect());
-            }
-            if !option.settings.is_empty() {
-                object.insert("settings".into(), setting::object(&option.settings));
-            }
-            Value::Object(object)
-        });
-        put("options", options.collect());
-    }
-    if let Some(found) = &result.every {
-        put("every", every(found));
-    }
-    if let Some(error) = &result.model {
-        put("model", json!(error));
-    }
-    if let Some(found) = &result.distribution {
-        put("distribution", distribution(found));
-    }
-    if let Some(found) = &result.rare {
-        put("splitting", json!(found));
-    }
-    if let Some(found) = &result.evidence {
-        put("evidence", evidence(found));
-    }
-    put("warnings", json!(result.warnings));
-    put("witnesses", result.witnesses.iter().map(|one| witness(one, result.asked.against)).collect());
-    put("replay", json!(result.replay));
-    put("elapsed_s", json!(result.elapsed_s));
-    Value::Object(object)
+    let QueryResult { asked, consumed, .. } = result;
+    joined([
+        json!({
+            "index": asked.index,
+            "name": asked.name,
+            "query": asked.text,
+            "file": asked.file,
+            "line": asked.line,
+            "settings": setting::object(&asked.settings),
+            "kind": asked.kind.name(),
+            "verdict": result.verdict.map(Verdict::name),
+            "certifies": result.certifies,
+            "horizon": asked.horizon,
+        }),
+        optional("given", asked.given.as_ref()),
+        json!({
+            "estimate": maybe(result.estimate),
+            "low": number(result.low),
+            "high": number(result.high),
+            "censored": result.censored.is_some(),
+            "of": result.of,
+            "unit": result.unit,
+            "interval": result.interval,
+            "method": method(&result.method),
+        }),
+        json!(consumed.counts),
+        json!({ "clipped": consumed.clipped, "shrunk": consumed.shrunk }),
+        optional("no_way", Some(consumed.no_way).filter(|count| *count > 0)),
+        json!({ "steps": consumed.steps, "stopped_by": result.stopped_by.name() }),
+        optional("shortfall", result.shortfall().map(Shortfall::name)),
+        result.compare.as_ref().map_or(Value::Null, |Comparison { first, second, difference }| {
+            json!({ "first": side(first), "second": side(second), "difference": side(difference) })
+        }),
+        result.rank.as_ref().map_or(Value::Null, |found| ranking(found, asked.kind == Kind::Pareto)),
+        optional("every", result.every.as_ref().map(every)),
+        optional("model", result.model.as_ref()),
+        optional("distribution", result.distribution.as_ref().map(distribution)),
+        optional("splitting", result.rare),
+        optional("evidence", result.evidence.as_ref().map(evidence)),
+        json!({
+            "warnings": result.warnings,
+            "witnesses": result.witnesses.iter().map(|one| witness(one, asked.against)).collect::<Vec<_>>(),
+            "replay": result.replay,
+            "elapsed_s": result.elapsed_s,
+        }),
+    ])
 }
 
 fn method(method: &Method) -> Value {
-    let mut object = Map::new();
-    object.insert("name".into(), json!(method.name));
-    object.extend(method.numbers.iter().map(|(name, value)| (name.clone(), number(*value))));
-    Value::Object(object)
+    let numbers = method.numbers.iter().map(|(name, value)| (name.clone(), number(*value)));
+    joined([json!({ "name": method.name }), Value::Object(numbers.collect())])
 }
 
-fn counts(counts: &Counts) -> Map<String, Value> {
-    let fields = [
-        ("trials", counts.trials),
-        ("successes", counts.successes),
-        ("failures", counts.failures),
-        ("unresolved", counts.unresolved),
-    ];
-    fields.into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect()
+fn interval(value: &Interval) -> Value {
+    json!({ "estimate": number(value.estimate), "low": number(value.low), "high": number(value.high) })
 }
 
-fn interval(value: &Interval) -> Map<String, Value> {
-    let fields = [("estimate", value.estimate), ("low", value.low), ("high", value.high)];
-    fields.into_iter().map(|(name, value)| (name.to_owned(), number(value))).collect()
-}
-
-fn numbered(key: &str, label: &str, value: &Interval, trials: &Counts) -> Map<String, Value> {
-    let mut object = Map::new();
-    object.insert(key.to_owned(), json!(label));
-    object.extend(interval(value));
-    object.extend(counts(trials));
-    object
+fn ranking(found: &Ranking, is_pareto: bool) -> Value {
+    let option = |option: &RankedOption| {
+        let RankedOption { label, value, counts, under, also: beside, settings, .. } = option;
+        let under: Vec<Value> = under.iter().map(side).collect();
+        let beside: Vec<Value> = beside.iter().map(also).collect();
+        joined([
+            json!({ "option": label }),
+            interval(value),
+            json!(counts),
+            json!({ "status": option.status.name() }),
+            optional("under", Some(under).filter(|all| !all.is_empty())),
+            optional("also", Some(beside).filter(|all| !all.is_empty())),
+            optional("settings", (!settings.is_empty()).then(|| setting::object(settings))),
+        ])
+    };
+    joined([
+        json!({ "choice": found.choice }),
+        optional("aim", is_pareto.then_some(&found.aim)),
+        optional("front", is_pareto.then(|| front(found).collect::<Vec<_>>())),
+        optional("none", found.is_empty.then_some(true)),
+        optional("means", found.means.as_ref()),
+        json!({
+            "gap": number(found.gap),
+            "tied": found.tied,
+            "options": found.options.iter().map(option).collect::<Vec<_>>(),
+        }),
+    ])
 }
 
 fn also(also: &Also) -> Value {
-    let mut object = Map::new();
-    object.insert("what".into(), json!(also.what));
-    object.extend(interval(&also.value));
-    object.insert("unit".into(), json!(also.unit));
-    object.insert("holds".into(), json!(also.holds));
-    Value::Object(object)
+    let rest = json!({ "unit": also.unit, "holds": also.holds });
+    joined([json!({ "what": also.what }), interval(&also.value), rest])
 }
 
 fn every(every: &Every) -> Value {
+    let best = |(option, worth): &(String, f64)| json!({ "option": option, "estimate": number(*worth) });
     let part = |part: &UnderOne| {
-        let mut object = interval(&part.figure);
-        object.insert("value".into(), json!(part.setting.1));
-        object.extend(counts(&part.counts));
-        object.insert("verdict".into(), json!(part.verdict.map(Verdict::name)));
-        if let Some((option, worth)) = &part.best {
-            object.insert("best".into(), json!({ "option": option, "estimate": number(*worth) }));
-        }
-        Value::Object(object)
+        joined([
+            interval(&part.figure),
+            json!({ "value": part.setting.1 }),
+            json!(part.counts),
+            json!({ "verdict": part.verdict.map(Verdict::name) }),
+            optional("best", part.best.as_ref().map(best)),
+        ])
     };
     let parts: Vec<Value> = every.parts.iter().map(part).collect();
     json!({ "name": every.name, "least": every.least_value(), "values": parts })
 }
 
 fn side(side: &Side) -> Value {
-    Value::Object(numbered("settings", &side.label, &side.value, &side.counts))
+    joined([json!({ "settings": side.label }), interval(&side.value), json!(side.counts)])
 }
 
 fn witness(witness: &Witness, against: bool) -> Value {
-    let mut shown = json!({
+    let decider = |decider: &Decider| {
+        let value = decider.value.filter(|value| value.is_finite());
+        joined([
+            json!({ "agent": decider.agent, "place": decider.place }),
+            value.map_or(Value::Null, |value| json!({ "value": value, "unit": decider.unit })),
+            optional("other", decider.other.as_ref()),
+        ])
+    };
+    let shown = json!({
         "shows": witness.shows.name(),
         "passing": match witness.shows {
             Shows::Fails => Some(against),
@@ -255,37 +234,19 @@ fn witness(witness: &Witness, against: bool) -> Value {
         "what": witness.what,
         "command": witness.command,
     });
-    if let (Some(decider), Some(fields)) = (&witness.decider, shown.as_object_mut()) {
-        let mut by = json!({ "agent": decider.agent, "place": decider.place });
-        if let (Some(value), Some(fields)) =
-            (decider.value.filter(|value| value.is_finite()), by.as_object_mut())
-        {
-            fields.insert("value".to_owned(), json!(value));
-            fields.insert("unit".to_owned(), json!(decider.unit));
-        }
-        if let (Some(other), Some(fields)) = (&decider.other, by.as_object_mut()) {
-            fields.insert("other".to_owned(), json!(other));
-        }
-        fields.insert("decided_by".to_owned(), by);
-    }
-    shown
+    joined([shown, optional("decided_by", witness.decider.as_ref().map(decider))])
 }
 
 fn evidence(found: &Evidence) -> Value {
     match found {
         Evidence::Values(snapshots) => {
-            let weights = snapshots.iter().find_map(|one| one.weights);
+            let pair = |above: f64, below: f64| json!({ "above": number(above), "below": number(below) });
             let shown = |one: &Snapshot| {
-                let mut object = Map::from_iter([("trials".to_owned(), json!(one.trials))]);
-                object.extend(interval(&one.value));
-                if let Some([above, below]) = one.weights {
-                    object.insert("above".into(), number(above.log));
-                    object.insert("below".into(), number(below.log));
-                }
-                Value::Object(object)
+                let weights = one.weights.map_or(Value::Null, |[above, below]| pair(above.log, below.log));
+                joined([json!({ "trials": one.trials }), interval(&one.value), weights])
             };
-            let thresholds = weights
-                .map(|[above, below]| json!({ "above": number(above.threshold), "below": number(below.threshold) }));
+            let weights = snapshots.iter().find_map(|one| one.weights);
+            let thresholds = weights.map(|[above, below]| pair(above.threshold, below.threshold));
             json!({ "thresholds": thresholds, "snapshots": snapshots.iter().map(shown).collect::<Vec<_>>() })
         }
         Evidence::Options { labels, snapshots } => {
@@ -297,7 +258,7 @@ fn evidence(found: &Evidence) -> Value {
 }
 
 fn distribution(found: &Distribution) -> Value {
-    let histogram = found.histogram.as_ref().map(|histogram| {
+    let histogram = |histogram: &Histogram| {
         json!({
             "low": number(histogram.low),
             "high": number(histogram.high),
@@ -305,32 +266,19 @@ fn distribution(found: &Distribution) -> Value {
             "below": histogram.below,
             "beyond": histogram.beyond,
         })
-    });
-    let quantiles: Vec<Value> = found
-        .quantiles
-        .iter()
-        .map(|quantile| {
-            let mut object = Map::new();
-            object.insert("level".into(), json!(quantile.level));
-            object.extend(interval(&quantile.value));
-            Value::Object(object)
-        })
-        .collect();
-    let empirical: Vec<Value> = found
-        .empirical
-        .iter()
-        .map(|step| json!({ "value": number(step.value), "share": number(step.share) }))
-        .collect();
-    let mut object =
-        json!({ "histogram": histogram, "quantiles": quantiles, "empirical": empirical, "band": found.band });
-    if let (Some(curve), Some(fields)) = (&found.curve, object.as_object_mut()) {
-        let point = |point: &CurvePoint| {
-            let mut object = Map::from_iter([("at".to_owned(), number(point.at))]);
-            object.extend(interval(&point.value));
-            Value::Object(object)
-        };
+    };
+    let quantile = |one: &Quantile| joined([json!({ "level": one.level }), interval(&one.value)]);
+    let step = |step: &Step| json!({ "value": number(step.value), "share": number(step.share) });
+    let point = |point: &CurvePoint| joined([json!({ "at": number(point.at) }), interval(&point.value)]);
+    let curve = |curve: &Curve| {
         let points: Vec<Value> = curve.points.iter().map(point).collect();
-        fields.insert("curve".into(), json!({ "name": curve.name, "unit": curve.unit, "points": points }));
-    }
-    object
+        json!({ "name": curve.name, "unit": curve.unit, "points": points })
+    };
+    let shown = json!({
+        "histogram": found.histogram.as_ref().map(histogram),
+        "quantiles": found.quantiles.iter().map(quantile).collect::<Vec<_>>(),
+        "empirical": found.empirical.iter().map(step).collect::<Vec<_>>(),
+        "band": found.band,
+    });
+    joined([shown, optional("curve", found.curve.as_ref().map(curve))])
 }

@@ -441,7 +441,7 @@ pub struct ConsumedTrials {
 
 /// Consumed trials by outcome. Trials with a number instead of a truth value are neither successes nor
 /// failures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Counts {
     /// All.
     pub trials: u64,
