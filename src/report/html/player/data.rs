@@ -1,18 +1,19 @@
 //! The data of the player as JSON: positions as differences from frame to frame.
 
-use super::scene::Scene;
+use super::scene::scene;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::{Bar, PlannedWay, Shown, Trace, Track};
 use crate::report::number::count;
 use crate::report::phrase::{one_line, settings};
 use crate::report::text;
 use serde::Serialize;
+use serde_json::Value;
 use std::sync::Arc;
 
 /// All that the player shows.
 #[derive(Debug, Serialize)]
 pub(super) struct Data<'t> {
-    scenes: Vec<Scene>,
+    scenes: Vec<Value>,
     traces: Vec<Motion<'t>>,
     pub(super) entries: Vec<Entry<'t>>,
 }
@@ -34,7 +35,7 @@ struct Motion<'t> {
 }
 
 /// What can be chosen: a trace as one of a result.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub(super) struct Entry<'t> {
     trace: usize,
     /// Of which result it is; it is listed with the others of it.
@@ -64,12 +65,14 @@ impl<'t> Data<'t> {
         for (number, trace) in traces.iter().enumerate() {
             let scene = known.iter().position(|one| Arc::ptr_eq(one, &trace.scenario)).unwrap_or_else(|| {
                 known.push(&trace.scenario);
-                data.scenes.push(Scene::of(&trace.scenario));
+                data.scenes.push(scene(&trace.scenario));
                 known.len() - 1
             });
             data.traces.push(motion(scene, trace));
             if trace.shows.is_empty() {
-                data.entries.push(bare(number, trace));
+                // A trial that belongs to no result.
+                let label = named(trace);
+                data.entries.push(Entry { trace: number, trial: trace.trial, label, ..Entry::default() });
             }
             data.entries.extend(trace.shows.iter().map(|shown| entry(run, number, trace, shown)));
         }
@@ -91,24 +94,6 @@ fn motion(scene: usize, trace: &Trace) -> Motion<'_> {
         tracks: &motion.tracks,
         plans: &motion.plans,
         memberships: motion.memberships.iter().map(|one| (one.first, one.agent, one.group)).collect(),
-    }
-}
-
-/// A trial that belongs to no result.
-fn bare(number: usize, trace: &Trace) -> Entry<'_> {
-    Entry {
-        trace: number,
-        result: None,
-        trial: trace.trial,
-        shows: None,
-        group: String::new(),
-        label: named(trace),
-        decided: None,
-        moment: None,
-        what: String::new(),
-        agents: Vec::new(),
-        command: String::new(),
-        bars: &[],
     }
 }
 
