@@ -1,9 +1,8 @@
 //! How often a model was right about recorded people, as text: the bins, the regions, and whether later persons agree.
 
 use super::number::plain;
-use super::palette::Palette;
 use super::phrase::span;
-use super::text::columns::{Cell, lines};
+use super::text::columns::table;
 use crate::engine::outcome::CallResult;
 use crate::replay::calibrate::{Bin, CalibratedProperty, CalibratedRegion, Calibration, DRIFTED};
 use crate::report::html::{Page, Table};
@@ -26,11 +25,11 @@ pub fn text(found: &Calibration) -> String {
             many => format!(" ({many} unresolved: the recording does not tell)"),
         };
         let _ = writeln!(out, "{}{unresolved}", property.name);
-        write_table(&mut out, &BINS, property.bins.iter().map(bin));
+        table(&mut out, "  ", &BINS, property.bins.iter().map(bin));
         out.push('\n');
     }
     let _ = writeln!(out, "{REGIONS}");
-    write_table(&mut out, &TIMES, found.regions.iter().map(region));
+    table(&mut out, "  ", &TIMES, found.regions.iter().map(region));
     out.push('\n');
     for drift in drifts(found) {
         let _ = writeln!(out, "drift: {drift}");
@@ -65,21 +64,6 @@ fn bin(bin: &Bin) -> Vec<String> {
 fn region(region: &CalibratedRegion) -> Vec<String> {
     let shares = [region.first, region.before, region.factor, region.after];
     std::iter::once(plain(region.seconds)).chain(shares.map(|share| format!("{share:.2}"))).collect()
-}
-
-/// A table of which the first column stands on the left, the others on the right.
-fn write_table(out: &mut String, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
-    let cells = |row: Vec<String>| {
-        let cell = |(k, text): (usize, String)| {
-            if k == 0 { Cell::left(format!("  {text}")) } else { Cell::right(text) }
-        };
-        row.into_iter().enumerate().map(cell).collect::<Vec<Cell>>()
-    };
-    let head = head.iter().map(|text| (*text).to_owned()).collect();
-    let rows: Vec<Vec<Cell>> = std::iter::once(head).chain(rows).map(cells).collect();
-    for line in lines(&rows, Palette::PLAIN) {
-        let _ = writeln!(out, "{}", line.trim_end());
-    }
 }
 
 /// A calibration as a page: a table for each property, one for the regions, and the drift.

@@ -7,7 +7,9 @@
 
 use super::phrase::one_line;
 use super::setting;
-use crate::engine::outcome::{CallResult, Counts, Interval, QueryResult, RankedOption, Side, Verdict};
+use crate::engine::outcome::{
+    CallResult, Comparison, Counts, Interval, QueryResult, RankedOption, Side, Verdict,
+};
 
 /// A column: its name, and what is in it.
 type Column = (&'static str, fn(&Row<'_>) -> String);
@@ -54,8 +56,7 @@ pub fn render(run: &CallResult) -> String {
     }
     let mut table = csv::Writer::from_writer(Vec::new());
     // Writing into memory does not fail.
-    let header = COLUMNS.iter().map(|(name, _)| (*name).to_owned());
-    let mut names: Vec<String> = header.collect();
+    let mut names: Vec<String> = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).collect();
     for (prefix, more) in [("method", &methods), ("set", &settings)] {
         for name in more {
             let is_taken = names.contains(name);
@@ -124,12 +125,8 @@ fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
         seed,
     };
     let mut rows = vec![whole];
-    if let Some(comparison) = &result.compare {
-        let sides = [
-            ("first", &comparison.first),
-            ("second", &comparison.second),
-            ("difference", &comparison.difference),
-        ];
+    if let Some(Comparison { first, second, difference }) = &result.compare {
+        let sides = [("first", first), ("second", second), ("difference", difference)];
         rows.extend(sides.map(|(kind, side)| {
             let Side { label, value, counts } = side;
             Row { kind, label, status: "", value: *value, counts: *counts, ..whole }
@@ -137,15 +134,8 @@ fn rows(result: &QueryResult, seed: u64) -> Vec<Row<'_>> {
     }
     for option in result.rank.iter().flat_map(|ranking| &ranking.options) {
         let RankedOption { label, settings: own, value, counts, status, also, .. } = option;
-        let row = Row {
-            kind: "option",
-            label,
-            status: status.name(),
-            value: *value,
-            counts: *counts,
-            own,
-            ..whole
-        };
+        let (status, value, counts) = (status.name(), *value, *counts);
+        let row = Row { kind: "option", label, status, value, counts, own, ..whole };
         rows.push(row);
         rows.extend(also.iter().map(|also| {
             let status = also.holds.map_or("", |holds| if holds { "satisfied" } else { "violated" });

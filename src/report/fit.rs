@@ -74,9 +74,9 @@ impl FittedModel {
     }
 
     /// Compares two states of the model.
-    fn comparison(&self, name: &str, of: &Comparison) -> [String; 5] {
+    fn comparison(&self, name: &str, of: &Comparison) -> Vec<String> {
         let sign = self.sign();
-        [
+        vec![
             name.to_owned(),
             count(of.persons),
             brief(sign * of.before),
@@ -90,19 +90,14 @@ impl FittedModel {
         let mut out = String::new();
         let by = self.properties.join(", ");
         let by = if by.is_empty() { "positions after 1, 2 and 4.8 s".to_owned() } else { by };
+        let Self { recording, velocity, model, kind, seed, .. } = self;
+        let _ = writeln!(out, "{recording} ({velocity} velocities), {model}, kind {kind}, by {by}");
+        let (instants, every) = (counted(self.instants, "instant"), plain(self.every));
+        let (trials, candidates) =
+            (counted(self.trials, "trial"), counted(self.found.candidates, "candidate"));
         let _ = writeln!(
             out,
-            "{} ({} velocities), {}, kind {}, by {by}",
-            self.recording, self.velocity, self.model, self.kind
-        );
-        let _ = writeln!(
-            out,
-            "{}, every {} s; {} an instant, seed {}; {} in {}\n",
-            counted(self.instants, "instant"),
-            plain(self.every),
-            counted(self.trials, "trial"),
-            self.seed,
-            counted(self.found.candidates, "candidate"),
+            "{instants}, every {every} s; {trials} an instant, seed {seed}; {candidates} in {}\n",
             counted(self.found.generations.len() as u64, "generation"),
         );
         let row = |one: &Candidate| {
@@ -111,24 +106,25 @@ impl FittedModel {
                 || "-".to_owned(),
                 |[low, high]| format!("[{}, {}]", brief(low / size), brief(high / size)),
             );
-            [one.parameter.name().to_owned(), unit, brief(one.start / size), brief(one.value / size), ends]
+            vec![
+                one.parameter.name().to_owned(),
+                unit,
+                brief(one.start / size),
+                brief(one.value / size),
+                ends,
+            ]
         };
-        let rows = self.found.parameters.iter().map(row).collect();
-        table(&mut out, "  ", ["parameter", "unit", "start", "fitted", "interval"], rows);
+        let heads = ["parameter", "unit", "start", "fitted", "interval"];
+        table(&mut out, "  ", &heads, self.found.parameters.iter().map(row));
         let _ = writeln!(out, "\n{}", self.score());
+        let test = self.test.as_ref().map(|(name, of)| (name.as_str(), of));
         let named = [("fitted to", &self.found.fitted), ("held out", &self.found.held_out)];
-        let mut rows: Vec<_> =
-            (named.iter()).filter_map(|(name, of)| of.as_ref().map(|of| self.comparison(name, of))).collect();
-        if let Some((name, Some(of))) = &self.test {
-            rows.push(self.comparison(name, of));
-        }
-        table(&mut out, "  ", ["persons", "number", "model", "fitted", "better by"], rows);
+        let named = named.into_iter().chain(test);
+        let rows = named.filter_map(|(name, of)| Some(self.comparison(name, of.as_ref()?)));
+        table(&mut out, "  ", &["persons", "number", "model", "fitted", "better by"], rows);
         let _ = writeln!(out, "\n{}", self.block());
-        let _ = writeln!(
-            out,
-            "Brackets: {} % intervals (bootstrap over persons).",
-            plain(100.0 * self.confidence)
-        );
+        let level = plain(100.0 * self.confidence);
+        let _ = writeln!(out, "Brackets: {level} % intervals (bootstrap over persons).");
         out
     }
 

@@ -19,16 +19,12 @@ pub fn text(total: &CallForecast) -> String {
         let query = super::phrase::one_line(query);
         let under = super::phrase::listed(settings);
         let under = if under.is_empty() { under } else { format!("   {under}") };
-        text.push_str(&format!(
-            "forecast: {trials}, {}: {query}{under}\n",
-            between(forecast.seconds_between())
-        ));
+        let time = between(forecast.seconds_between());
+        text += &format!("forecast: {trials}, {time}: {query}{under}\n");
     }
     if total.queries.len() > 1 {
-        text.push_str(&format!(
-            "forecast: {} in total; checks and estimates of one scenario share trials\n",
-            between(total.between)
-        ));
+        let time = between(total.between);
+        text += &format!("forecast: {time} in total; checks and estimates of one scenario share trials\n");
     }
     text
 }

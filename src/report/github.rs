@@ -3,7 +3,7 @@
 //! A violated `check` is an error, an undecided one and every warning is a warning; a notice sums up.
 //! Values are escaped as the runner unescapes them: `%`, line ends, and in properties `:` and `,` too.
 
-use super::phrase::{certified, one_line, settings};
+use super::phrase::{asked, certified, one_line};
 use super::{exit_code, text};
 use crate::engine::outcome::{CallResult, Failure, Finding, QueryResult, Verdict};
 use std::fmt::Write as _;
@@ -36,16 +36,14 @@ pub fn render(run: &CallResult) -> String {
         let _ = writeln!(page, "::warning title=smc::{}", data(warning));
     }
     match &run.failure {
-        // Those of the front end are annotated one by one.
-        Some(Failure::Input(_) | Failure::Model(_) | Failure::Late(_))
-            if run.diagnostics.iter().any(|finding| finding.error) => {}
-        Some(failure @ (Failure::Input(_) | Failure::Model(_) | Failure::Late(_))) => {
-            let _ = writeln!(page, "::error title=smc::{}", data(&failure.message()));
-        }
         Some(Failure::Bug(message)) => {
             let _ = writeln!(page, "::error title=bug in smc::{}", data(message));
         }
-        None => {}
+        // Those of the front end are annotated one by one.
+        Some(failure) if !run.diagnostics.iter().any(|finding| finding.error) => {
+            let _ = writeln!(page, "::error title=smc::{}", data(&failure.message()));
+        }
+        _ => {}
     }
     let parts: Vec<String> = text::tally(run).into_iter().map(|(n, word, _)| format!("{n} {word}")).collect();
     let summary = format!(
@@ -92,11 +90,7 @@ fn annotation(finding: &Finding) -> String {
 }
 
 fn finding(result: &QueryResult) -> String {
-    let mut said = one_line(&result.asked.text);
-    let with = settings(result);
-    if !with.is_empty() {
-        let _ = write!(said, " where {with}");
-    }
+    let mut said = asked(result);
     let statement = certified(result);
     if !statement.is_empty() {
         let _ = write!(said, "\ncertified: {statement}");

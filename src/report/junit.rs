@@ -4,7 +4,7 @@
 //! Other queries pass with their numbers as output.
 
 use super::palette::Palette;
-use super::phrase::{certified, one_line, settings};
+use super::phrase::{asked, certified};
 use super::text;
 use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Finding, QueryResult, Verdict};
@@ -117,12 +117,8 @@ fn case(result: &QueryResult) -> Case {
         Some(Verdict::Undecided) => bad("error", "undecided"),
         Some(Verdict::Satisfied) | None => None,
     };
-    let mut name = one_line(&result.asked.text);
-    let with = settings(result);
-    if !with.is_empty() {
-        name = format!("{name} where {with}");
-    }
-    Case { name, result: Some((seconds(result.elapsed_s), text::block(result, Palette::PLAIN))), fault }
+    let text = text::block(result, Palette::PLAIN);
+    Case { name: asked(result), result: Some((seconds(result.elapsed_s), text)), fault }
 }
 
 /// Seconds with three decimals.

@@ -72,6 +72,11 @@ pub fn estimated(found: &Estimate, unit: &str) -> String {
     format!("{}{unit} {}{unit}", printed.estimate, printed.interval)
 }
 
+/// Prints an estimate as `estimated` does, or a dash where there is none.
+pub fn maybe_estimated(found: Option<Estimate>, unit: &str) -> String {
+    found.map_or_else(|| "-".to_owned(), |found| estimated(&found, unit))
+}
+
 /// The largest magnitude of the finite numbers.
 fn largest(value: &Interval) -> f64 {
     let Interval { estimate, low, high } = *value;

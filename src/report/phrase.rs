@@ -1,11 +1,23 @@
 //! Phrases about a result that several formats share.
 
 use super::number::plain;
-use crate::engine::outcome::{Kind, ModelError, QueryResult, Ranking, Status};
+use crate::engine::outcome::{AskedQuery, Kind, ModelError, QueryResult, Ranking, Status};
 
 /// A query on one line, as written.
 pub(super) fn one_line(query: &str) -> String {
     query.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// A query on one line with its settings: `check P(safe) >= 0.9 where people = 5`
+pub(super) fn asked(result: &QueryResult) -> String {
+    let (query, with) = (one_line(&result.asked.text), settings(result));
+    if with.is_empty() { query } else { format!("{query} where {with}") }
+}
+
+/// Where a query stands: `safe.bltl:3`
+pub(super) fn place(result: &QueryResult) -> Option<String> {
+    let AskedQuery { file, line, .. } = &result.asked;
+    (!file.is_empty()).then(|| format!("{file}:{line}"))
 }
 
 /// `density = 0.2 /m^2, step = 0.02 s`

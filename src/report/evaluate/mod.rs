@@ -72,7 +72,7 @@ pub struct EvaluatedKind {
 }
 
 /// Recorded positions among those that trials predict.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Coverage {
     /// After how many seconds.
     pub seconds: f64,
@@ -144,18 +144,10 @@ pub fn write_csv(out: impl io::Write, report: &Evaluated) -> io::Result<()> {
         for property in &kind.properties {
             let bins = property.quality.iter().flat_map(|quality| &quality.score.bins);
             for (number, bin) in (1_u32..).zip(bins) {
-                let [low, high, mean, share] = [bin.low, bin.high, bin.mean, bin.share].map(plain);
-                let (number, count) = (number.to_string(), bin.count.to_string());
-                table.write_record([
-                    &kind.name,
-                    &property.name,
-                    &number,
-                    &count,
-                    &low,
-                    &high,
-                    &mean,
-                    &share,
-                ])?;
+                let counts = [number.to_string(), bin.count.to_string()];
+                let numbers = [bin.low, bin.high, bin.mean, bin.share].map(plain);
+                let names = [&kind.name, &property.name];
+                table.write_record(names.into_iter().chain(&counts).chain(&numbers))?;
             }
         }
     }
@@ -197,7 +189,7 @@ fn kind(kind: &EvaluatedKind) -> Value {
         "name": kind.name,
         "properties": kind.properties.iter().map(property).collect::<Vec<_>>(),
         "displacement": kind.displacement.as_ref().map(displacement),
-        "coverage": kind.coverage.iter().map(coverage).collect::<Vec<_>>(),
+        "coverage": kind.coverage,
         "realism": kind.realism.iter().map(|(name, found)| ((*name).to_owned(), json!(found))).collect::<serde_json::Map<_, _>>(),
     })
 }
@@ -222,10 +214,6 @@ fn property(property: &EvaluatedProperty) -> Value {
         "bins": score.map_or(&[][..], |score| &score.bins),
         "histogram": score.map_or([0; 10], |score| score.histogram),
     })
-}
-
-fn coverage(found: &Coverage) -> Value {
-    json!({ "seconds": found.seconds, "share": found.share, "log_density": found.log_density })
 }
 
 fn displacement(found: &Displacement) -> Value {

@@ -1,9 +1,9 @@
 //! Evaluated predictions for people.
 
-use super::{CONSTANT, Coverage, Evaluated, EvaluatedKind, EvaluatedProperty};
-use crate::report::number::{count, counted, estimated, plain, thousandths};
+use super::{CONSTANT, Displacement, Evaluated, EvaluatedKind, EvaluatedProperty};
+use crate::report::number::{count, counted, estimated, maybe_estimated, plain, thousandths};
 use crate::report::text::columns::table;
-use crate::stats::{Estimate, Quality};
+use crate::stats::Estimate;
 use std::fmt::Write as _;
 
 /// Tables for each property, and one of distances.
@@ -12,14 +12,11 @@ pub fn to_text(report: &Evaluated) -> String {
     let velocity = report.velocity.name();
     let files = report.properties.join(", ");
     let _ = writeln!(out, "{} ({velocity} velocities), {}, {files}", report.recording, report.model);
+    let (instants, persons) = (counted(report.instants, "instant"), counted(report.persons, "person"));
+    let [moving, every, horizon] = [report.moving, report.every, report.horizon].map(plain);
     let _ = writeln!(
         out,
-        "{} of {} faster than {} m/s, every {} s; horizon {} s",
-        counted(report.instants, "instant"),
-        counted(report.persons, "person"),
-        plain(report.moving),
-        plain(report.every),
-        plain(report.horizon)
+        "{instants} of {persons} faster than {moving} m/s, every {every} s; horizon {horizon} s"
     );
     let _ = writeln!(out, "{} an instant, seed {}", counted(report.trials, "trial"), report.seed);
     for name in report.names() {
@@ -69,30 +66,35 @@ fn compared(skill: &Estimate) -> String {
     }
 }
 
-fn maybe(estimate: Option<&Estimate>) -> String {
-    estimate.map_or_else(|| "-".to_owned(), |found| estimated(found, ""))
+fn maybe(estimate: Option<Estimate>) -> String {
+    maybe_estimated(estimate, "")
 }
 
 fn scores(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
     let rows = kinds.iter().map(|(kind, property)| {
         let quality = property.quality.as_ref();
-        [
+        vec![
             kind.name.clone(),
             count(quality.map_or(0, |quality| quality.score.count)),
             count(property.unresolved),
-            maybe(quality.map(|quality| &quality.brier)),
-            maybe(quality.and_then(|quality| quality.skill.as_ref())),
-            maybe(quality.map(|quality| &quality.calibration_error)),
+            maybe(quality.map(|quality| quality.brier)),
+            maybe(quality.and_then(|quality| quality.skill)),
+            maybe(quality.map(|quality| quality.calibration_error)),
         ]
     });
     let heads = ["kind", "predictions", "unresolved", "Brier score", "skill", "calibration error"];
-    table(out, "  ", heads, rows.collect());
+    table(out, "  ", &heads, rows);
+}
+
+/// The row of a kind.
+fn row(kind: &EvaluatedKind, numbers: impl IntoIterator<Item = String>) -> Vec<String> {
+    std::iter::once(kind.name.clone()).chain(numbers).collect()
 }
 
 /// The terms of the Brier score.
 fn terms(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
-    let row = |kind: &EvaluatedKind, quality: &Quality| {
-        let score = &quality.score;
+    let rows = kinds.iter().filter_map(|(kind, property)| {
+        let score = &property.quality.as_ref()?.score;
         let terms = [
             score.base_rate,
             score.reliability,
@@ -101,41 +103,27 @@ fn terms(out: &mut String, kinds: &[(&EvaluatedKind, &EvaluatedProperty)]) {
             score.within_bin_variance,
             score.within_bin_covariance,
         ];
-        let [a, b, c, d, e, f] = terms.map(|term| format!("{:.3}", thousandths(term)));
-        [kind.name.clone(), a, b, c, d, e, f]
-    };
-    let rows: Vec<_> = kinds
-        .iter()
-        .filter_map(|(kind, property)| property.quality.as_ref().map(|quality| row(kind, quality)))
-        .collect();
+        Some(row(kind, terms.map(|term| format!("{:.3}", thousandths(term)))))
+    });
+    let rows: Vec<_> = rows.collect();
     if !rows.is_empty() {
         let heads =
             ["terms", "base rate", "reliability", "resolution", "uncertainty", "variance", "covariance"];
-        table(out, "  ", heads, rows);
+        table(out, "  ", &heads, rows);
     }
 }
 
 /// Distances of predicted from walked paths.
 fn distances(out: &mut String, kinds: &[EvaluatedKind]) {
-    let rows = kinds.iter().filter_map(|kind| {
-        let found = kind.displacement.as_ref()?;
-        Some([
-            kind.name.clone(),
-            maybe(found.mean_ade.as_ref()),
-            maybe(found.mean_fde.as_ref()),
-            maybe(found.best_ade.as_ref()),
-            maybe(found.best_fde.as_ref()),
-            maybe(found.collisions.as_ref()),
-        ])
-    });
-    let rows: Vec<_> = rows.collect();
     let Some(found) = kinds.iter().find_map(|kind| kind.displacement) else { return };
-    let _ = writeln!(
-        out,
-        "\ndistances (m) of the mean path and of the best of {}",
-        counted(found.best_of, "path")
-    );
-    table(out, "  ", ["kind", "mean ADE", "mean FDE", "best ADE", "best FDE", "collision rate"], rows);
+    let paths = counted(found.best_of, "path");
+    let _ = writeln!(out, "\ndistances (m) of the mean path and of the best of {paths}");
+    let rows = kinds.iter().filter_map(|kind| {
+        let Displacement { mean_ade, mean_fde, best_ade, best_fde, collisions, .. } = kind.displacement?;
+        Some(row(kind, [mean_ade, mean_fde, best_ade, best_fde, collisions].map(maybe)))
+    });
+    let heads = ["kind", "mean ADE", "mean FDE", "best ADE", "best FDE", "collision rate"];
+    table(out, "  ", &heads, rows);
     let _ = writeln!(
         out,
         "  ADE: mean over all times; FDE: at the end; collision rate: share of paths that touch somebody"
@@ -144,17 +132,14 @@ fn distances(out: &mut String, kinds: &[EvaluatedKind]) {
 
 /// How many recorded positions are where they were predicted.
 fn coverage(out: &mut String, kinds: &[EvaluatedKind]) {
-    let row = |kind: &EvaluatedKind, found: &Coverage| {
-        let name = kind.name.clone();
-        [name, plain(found.seconds), maybe(found.share.as_ref()), maybe(found.log_density.as_ref())]
-    };
-    let known = |found: &&Coverage| found.share.is_some();
-    let rows: Vec<_> = (kinds.iter())
-        .flat_map(|kind| kind.coverage.iter().filter(known).map(move |found| row(kind, found)))
-        .collect();
+    let rows = kinds.iter().flat_map(|kind| {
+        let known = kind.coverage.iter().filter(|found| found.share.is_some());
+        known.map(|found| row(kind, [plain(found.seconds), maybe(found.share), maybe(found.log_density)]))
+    });
+    let rows: Vec<_> = rows.collect();
     if !rows.is_empty() {
         let _ = writeln!(out, "\nrecorded positions in the 90 % region of the predicted ones");
-        table(out, "  ", ["kind", "after s", "share", "log density"], rows);
+        table(out, "  ", &["kind", "after s", "share", "log density"], rows);
         let _ =
             writeln!(out, "  log density: mean logarithm of the density of the predicted positions, 1/m^2");
     }
@@ -162,16 +147,12 @@ fn coverage(out: &mut String, kinds: &[EvaluatedKind]) {
 
 /// How likely the recorded motion is.
 fn realism(out: &mut String, kinds: &[EvaluatedKind]) {
-    let row = |kind: &EvaluatedKind| match kind.realism.as_slice() {
-        [(_, a), (_, b), (_, c), (_, d), (_, e)] => {
-            let [a, b, c, d, e] = [a, b, c, d, e].map(|found| maybe(found.as_ref()));
-            Some([kind.name.clone(), a, b, c, d, e])
-        }
-        _ => None,
-    };
-    let rows: Vec<_> = kinds.iter().filter_map(row).collect();
+    let asked = kinds.iter().filter(|kind| !kind.realism.is_empty());
+    let rows: Vec<_> =
+        asked.map(|kind| row(kind, kind.realism.iter().map(|(_, found)| maybe(*found)))).collect();
     if !rows.is_empty() {
         let _ = writeln!(out, "\nmean log likelihood of the recorded motion among 32 trials; 0 is best");
-        table(out, "  ", ["kind", "speed", "acceleration", "nearest", "time to collision", "contact"], rows);
+        let heads = ["kind", "speed", "acceleration", "nearest", "time to collision", "contact"];
+        table(out, "  ", &heads, rows);
     }
 }

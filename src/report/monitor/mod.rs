@@ -8,7 +8,7 @@ pub use number::MonitoredNumber;
 
 use crate::data::tracks::Velocity;
 use crate::replay::Beyond;
-use crate::report::number::{count, counted, estimated, plain, thousandths};
+use crate::report::number::{count, counted, maybe_estimated, plain, thousandths};
 use crate::report::text::columns::table;
 use crate::stats::bootstrap::{Bootstrap, DRAWS, Estimate, ratio};
 use serde_json::{Value, json};
@@ -158,59 +158,51 @@ impl MonitoredProperty {
 /// A table with a row for each property, and why instants are unresolved.
 pub fn to_text(report: &Monitored) -> String {
     let mut out = String::new();
-    let Monitored { model, recording, every, confidence, .. } = report;
-    let user = report
-        .user
-        .map_or_else(|| "each person is the user in turn".to_owned(), |id| format!("user: person {id}"));
+    let Monitored { model, recording, every, .. } = report;
+    let (level, velocity) = (plain(100.0 * report.confidence), report.velocity.name());
+    let user = match report.user {
+        Some(id) => format!("user: person {id}"),
+        None => "each person is the user in turn".to_owned(),
+    };
     let beyond = match report.beyond {
         Beyond::Unresolved => "nothing is assumed",
         Beyond::Onward => "people go straight on",
     };
-    let _ = writeln!(
-        out,
-        "{recording} ({} velocities), {model}, {}",
-        report.velocity.name(),
-        report.properties.join(", ")
-    );
+    let files = report.properties.join(", ");
+    let _ = writeln!(out, "{recording} ({velocity} velocities), {model}, {files}");
     let _ = writeln!(out, "{user}, every {} s; after the end of a track: {beyond}\n", plain(*every));
     let rows = report.results.iter().map(|one| {
         let [satisfied, violated, unresolved, persons] =
             [one.satisfied, one.violated, one.unresolved, one.persons].map(count);
-        let share = one.share.as_ref().map_or_else(|| "-".to_owned(), |share| estimated(share, ""));
-        [one.name.clone(), satisfied, violated, unresolved, persons, share]
+        vec![one.name.clone(), satisfied, violated, unresolved, persons, maybe_estimated(one.share, "")]
     });
     let heads = ["property", "satisfied", "violated", "unresolved", "persons", "share satisfied"];
     if !report.results.is_empty() {
-        table(&mut out, "", heads, rows.collect());
+        table(&mut out, "", &heads, rows);
     }
     if !report.numbers.is_empty() {
         let parts = if report.user.is_some() { "blocks" } else { "persons" };
         let rows = report.numbers.iter().map(|one| {
             let unit = if one.unit.is_empty() { String::new() } else { format!(" {}", one.unit) };
-            let value = one.estimate.as_ref().map_or_else(|| "-".to_owned(), |value| estimated(value, &unit));
             let [instants, unresolved, clipped, parts] =
                 [one.instants, one.unresolved, one.clipped, one.parts].map(count);
-            [one.name.clone(), instants, unresolved, clipped, parts, value]
+            let value = maybe_estimated(one.estimate, &unit);
+            vec![one.name.clone(), instants, unresolved, clipped, parts, value]
         });
         out.push_str(if report.results.is_empty() { "" } else { "\n" });
-        table(&mut out, "", ["number", "instants", "unresolved", "clipped", parts, "value"], rows.collect());
+        table(&mut out, "", &["number", "instants", "unresolved", "clipped", parts, "value"], rows);
         let drawn = match report.user {
             Some(_) => format!("blocks of {} s", plain(number::BLOCK)),
             None => "persons".to_owned(),
         };
-        let _ = writeln!(
-            out,
-            "\nvalue: of all instants, with a {} % interval (bootstrap over {drawn})",
-            plain(100.0 * confidence)
-        );
+        let _ = writeln!(out, "\nvalue: of all instants, with a {level} % interval (bootstrap over {drawn})");
     }
     if report.results.is_empty() {
         return out;
     }
     let _ = writeln!(
         out,
-        "\nshare satisfied: of the resolved instants, with a {} % interval (bootstrap over persons)",
-        plain(100.0 * confidence)
+        "\nshare satisfied: of the resolved instants, with a {level} % interval (bootstrap over persons)"
     );
     for one in &report.results {
         for (reason, number) in one.reasons.iter().filter(|(reason, _)| !reason.is_empty()) {
@@ -238,22 +230,10 @@ pub fn to_json(report: &Monitored) -> String {
         "beyond": report.beyond.name(),
         "confidence": report.confidence,
         "results": report.results.iter().map(result).collect::<Vec<_>>(),
-        "numbers": report.numbers.iter().map(number).collect::<Vec<_>>(),
+        "numbers": report.numbers,
         "resampled": if report.user.is_some() { "blocks" } else { "persons" },
     });
     format!("{all:#}\n")
-}
-
-fn number(one: &MonitoredNumber) -> Value {
-    json!({
-        "name": one.name,
-        "unit": one.unit,
-        "instants": one.instants,
-        "unresolved": one.unresolved,
-        "clipped": one.clipped,
-        "parts": one.parts,
-        "value": one.estimate,
-    })
 }
 
 fn result(one: &MonitoredProperty) -> Value {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 pub(super) const BLOCK: f64 = 30.0;
 
 /// What a number came to.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct MonitoredNumber {
     /// As it is asked: `E(min<=4.8 s (distance(user, friend)))`.
     pub name: String,
@@ -24,6 +24,7 @@ pub struct MonitoredNumber {
     /// Persons, or blocks of time, with an instant.
     pub parts: u64,
     /// The number with its interval; `None` if no instant has a value.
+    #[serde(rename = "value")]
     pub estimate: Option<Estimate>,
 }
 

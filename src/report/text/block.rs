@@ -3,11 +3,11 @@
 use super::columns::Cell;
 use super::every;
 use super::rows;
-use super::rows::{MARGIN, line, printed};
+use super::rows::{MARGIN, in_size, line, printed};
 use crate::engine::at_most;
 use crate::engine::outcome::{
-    Comparison, Curve, Distribution, Histogram, Interval, Kind, QueryResult, RankedOption, Ranking, Rare,
-    Shortfall, Shows, Side, Stop, Verdict, Witness,
+    Comparison, Curve, Distribution, Histogram, Interval, Kind, Quantile, QueryResult, RankedOption, Ranking,
+    Rare, Shortfall, Shows, Side, Stop, Verdict, Witness,
 };
 use crate::report::number::{brief, clock, count, counted, duration, interval, plain, readable, some};
 use crate::report::palette::{Paint, Palette};
@@ -59,11 +59,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette, i
 /// The first line: the verdict, the query as written, where it stands.
 pub(super) fn head(text: &mut String, result: &QueryResult, palette: Palette) {
     let (word, paint) = word(result);
-    let place = if result.asked.file.is_empty() {
-        String::new()
-    } else {
-        format!("  {}:{}", result.asked.file, result.asked.line)
-    };
+    let place = phrase::place(result).map_or(String::new(), |place| format!("  {place}"));
     let pad = " ".repeat(MARGIN - word.len());
     // The word already says what is asked; only a verdict needs the keyword again.
     let query = one_line(&result.asked.text);
@@ -92,14 +88,8 @@ fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     let (shown, range) = printed(result, &value);
     let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
     let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}: "));
-    line(
-        text,
-        &format!(
-            "{of}{}  {range}{}",
-            palette.paint(Paint::Strong, &shown),
-            palette.paint(Paint::Faint, &kind)
-        ),
-    );
+    let (shown, kind) = (palette.paint(Paint::Strong, &shown), palette.paint(Paint::Faint, &kind));
+    line(text, &format!("{of}{shown}  {range}{kind}"));
 }
 
 /// The procedure with all its numbers, where the query does not name them itself.
@@ -135,16 +125,10 @@ fn rare(text: &mut String, rare: &Rare) {
     line(text, &format!("plain trials alone: {range}, 99 %"));
     if rare.runs > 0 {
         let levels = plain((10.0 * rare.levels).round() / 10.0);
-        line(
-            text,
-            &format!(
-                "splitting: {}, {levels} {} each, {}, {}",
-                counted(rare.runs, "run"),
-                if levels == "1" { "level" } else { "levels" },
-                counted(rare.paths, "path"),
-                counted(rare.steps, "step")
-            ),
-        );
+        let noun = if levels == "1" { "level" } else { "levels" };
+        let (runs, paths) = (counted(rare.runs, "run"), counted(rare.paths, "path"));
+        let steps = counted(rare.steps, "step");
+        line(text, &format!("splitting: {runs}, {levels} {noun} each, {paths}, {steps}"));
     }
 }
 
@@ -156,14 +140,15 @@ pub(super) fn shortfall(text: &mut String, result: &QueryResult, palette: Palett
         Stop::Missing => "too few outcomes",
         _ => "too little time",
     };
-    let said = match (shortfall, result.asked.kind) {
-        (Shortfall::NotBegun, _) if result.stopped_by == Stop::Cap => "the budget has no trial".to_owned(),
-        (Shortfall::NotBegun, _) if result.stopped_by == Stop::Missing => "no outcome is there".to_owned(),
-        (Shortfall::NotBegun, _) => format!("{lacking} for a trial"),
-        (Shortfall::Incomplete, Kind::Rank) => {
-            format!("{lacking} for a choice with the requested certificate")
-        }
-        (Shortfall::Incomplete, _) => format!("{lacking} for the requested result"),
+    let wanted = match (shortfall, result.asked.kind) {
+        (Shortfall::NotBegun, _) => "a trial",
+        (Shortfall::Incomplete, Kind::Rank) => "a choice with the requested certificate",
+        (Shortfall::Incomplete, _) => "the requested result",
+    };
+    let said = match (shortfall, result.stopped_by) {
+        (Shortfall::NotBegun, Stop::Cap) => "the budget has no trial".to_owned(),
+        (Shortfall::NotBegun, Stop::Missing) => "no outcome is there".to_owned(),
+        _ => format!("{lacking} for {wanted}"),
     };
     let word = palette.paint(Paint::Caution, &format!("{}:", shortfall.name()));
     line(text, &format!("{word} {said}"));
@@ -177,7 +162,7 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
 /// The counts.
 pub(in crate::report) fn counts(result: &QueryResult) -> String {
     let counts = result.consumed.counts;
-    let mut text = counted(counts.trials, "trial");
+    let text = counted(counts.trials, "trial");
     let mut parts = Vec::new();
     if counts.successes + counts.failures > 0 {
         // Of a quantile the event is not the claim, so that it does not hold or fail.
@@ -187,10 +172,7 @@ pub(in crate::report) fn counts(result: &QueryResult) -> String {
     }
     let odd = [(counts.unresolved, "unresolved"), (result.consumed.clipped, "clipped to the range")];
     parts.extend(odd.iter().filter(|(n, _)| *n > 0).map(|(n, what)| some(*n, what)));
-    if !parts.is_empty() {
-        text = format!("{text} ({})", parts.join(", "));
-    }
-    text
+    if parts.is_empty() { text } else { format!("{text} ({})", parts.join(", ")) }
 }
 
 /// Why sampling stopped.
@@ -256,16 +238,9 @@ pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: P
     let (word, paint) = (shown(*shows, of), if of { Paint::Neutral } else { paint });
     let said = if what.is_empty() { String::new() } else { format!(": {what}") };
     let command = if command.is_empty() { String::new() } else { format!("  ({command})") };
-    let command = palette.paint(Paint::Faint, &command);
-    line(
-        text,
-        &format!(
-            "{} in trial {} at {}{said}{command}",
-            palette.paint(paint, word),
-            count(*trial),
-            moment(*time, unit)
-        ),
-    );
+    let (word, command) = (palette.paint(paint, word), palette.paint(Paint::Faint, &command));
+    let (trial, at) = (count(*trial), moment(*time, unit));
+    line(text, &format!("{word} in trial {trial} at {at}{said}{command}"));
 }
 
 // The block of a comparison: both sides and the difference.
@@ -279,28 +254,17 @@ fn write_comparison(text: &mut String, result: &QueryResult, comparison: &Compar
     }
     let row = |side: &Side, paint: Option<Paint>, noun: &str, remark: String| {
         let (estimate, interval) = rows::printed(result, &side.value);
-        let estimate = Cell::left(estimate);
-        vec![
-            Cell::left(side.label.clone()),
-            match paint {
-                Some(paint) => estimate.paint(paint),
-                None => estimate,
-            },
-            Cell::left(interval),
-            Cell::right(counted(side.counts.trials, noun)),
-            Cell::left(remark),
-        ]
+        let trials = Cell::right(counted(side.counts.trials, noun));
+        let [label, estimate, interval] = [side.label.clone(), estimate, interval].map(Cell::left);
+        vec![label, estimate.paint(paint), interval, trials, Cell::left(remark)]
     };
     let unresolved = |n: u64| some(n, "unresolved");
     let counts = difference.counts;
-    let mut pairs = String::new();
-    if counts.successes + counts.failures > 0 {
-        pairs = format!(
-            "only the first holds {}, only the second {}",
-            count(counts.successes),
-            count(counts.failures)
-        );
-    }
+    let (first_alone, second_alone) = (count(counts.successes), count(counts.failures));
+    let pairs = match counts.successes + counts.failures {
+        0 => String::new(),
+        _ => format!("only the first holds {first_alone}, only the second {second_alone}"),
+    };
     let rows = [
         row(first, None, "trial", unresolved(first.counts.unresolved)),
         row(second, None, "trial", unresolved(second.counts.unresolved)),
@@ -314,37 +278,27 @@ fn write_comparison(text: &mut String, result: &QueryResult, comparison: &Compar
 
 /// Writes the lines under the head.
 fn write_ranking(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
-    if ranking.is_empty {
-        rows::line(text, "no option satisfies the constraints");
-        return options(text, result, ranking, palette);
-    }
-    if result.asked.kind == Kind::Pareto && result.consumed.counts.trials > 0 {
+    let (is_certified, is_sampled) = (!result.certifies.is_empty(), result.consumed.counts.trials > 0);
+    let said = if ranking.is_empty {
+        "no option satisfies the constraints".to_owned()
+    } else if result.asked.kind == Kind::Pareto && is_sampled {
         let names: Vec<String> =
             phrase::front(ranking).map(|label| palette.paint(Paint::Good, label)).collect();
-        let said = if result.certifies.is_empty() {
-            "so far, and not all is decided"
-        } else {
-            "that none dominates"
-        };
-        rows::line(text, &format!("{} {said}: {}", counted(names.len() as u64, "option"), names.join("; ")));
-        return options(text, result, ranking, palette);
-    }
-    let Some(choice) = &ranking.choice else {
-        let sampled = result.consumed.counts.trials > 0;
-        let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
-        rows::line(text, &format!("no choice: {why}"));
-        return;
-    };
-    let choice = palette.paint(Paint::Good, choice);
-    let mut said = if result.certifies.is_empty() {
-        format!("{choice} is best so far, but nothing is certified")
-    } else {
+        let said = if is_certified { "that none dominates" } else { "so far, and not all is decided" };
+        format!("{} {said}: {}", counted(names.len() as u64, "option"), names.join("; "))
+    } else if let Some(choice) = &ranking.choice {
+        let choice = palette.paint(Paint::Good, choice);
         let means = ranking.means.as_ref().map_or(String::new(), |means| format!(": {means}"));
-        format!("choose {choice}{means}")
+        let tied = if ranking.tied { "; options marked tied have the same certificate" } else { "" };
+        if is_certified {
+            format!("choose {choice}{means}{tied}")
+        } else {
+            format!("{choice} is best so far, but nothing is certified{tied}")
+        }
+    } else {
+        let why = if is_sampled { "no trial is resolved" } else { "nothing was sampled" };
+        return rows::line(text, &format!("no choice: {why}"));
     };
-    if ranking.tied {
-        said += "; options marked tied have the same certificate";
-    }
     rows::line(text, &said);
     options(text, result, ranking, palette);
 }
@@ -365,7 +319,7 @@ fn options(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: 
             row.push(Cell::left(format!("{interval}{mark}")));
         }
         row.push(Cell::right(counted(option.counts.trials, "trial")));
-        row.push(Cell::left(option.status.name()).paint(option.status.into()));
+        row.push(Cell::left(option.status.name()).paint(Paint::from(option.status)));
         row.push(Cell::left(some(option.counts.unresolved, "unresolved")));
         row
     };
@@ -387,16 +341,11 @@ fn write_distribution(text: &mut String, result: &QueryResult, found: &Distribut
     }
     // A single one is what was estimated, and stands above.
     if found.quantiles.len() > 1 {
-        let parts: Vec<String> = found
-            .quantiles
-            .iter()
-            .map(|q| {
-                let Interval { estimate, low, high } = q.value;
-                let value = Interval { estimate: estimate / size, low: low / size, high: high / size };
-                let horizon = result.censored.map(|horizon| horizon / size);
-                format!("{} %: {}{unit}", plain(100.0 * q.level), interval(&value, horizon).estimate)
-            })
-            .collect();
+        let one = |one: &Quantile| {
+            let (estimate, horizon) = (in_size(&one.value, size), result.censored.map(|end| end / size));
+            format!("{} %: {}{unit}", plain(100.0 * one.level), interval(&estimate, horizon).estimate)
+        };
+        let parts: Vec<String> = found.quantiles.iter().map(one).collect();
         rows::line(text, &format!("quantiles {}", parts.join(", ")));
     }
     if let Some(histogram) = &found.histogram {
@@ -425,8 +374,6 @@ fn write_curve(text: &mut String, curve: &Curve, palette: Palette) {
     let count = curve.points.len();
     let shown = count.min(MOST_POINTS);
     let place = |k: usize| if shown > 1 { k * (count - 1) / (shown - 1) } else { 0 };
-    let bar =
-        |share: f64| if share <= 0.0 { '·' } else { BARS[(share * 7.0).round().clamp(0.0, 7.0) as usize] };
     let line = |of: &dyn Fn(&Interval) -> f64| {
         (0..shown).map(|k| bar(of(&curve.points[place(k)].value))).collect::<String>()
     };
@@ -446,11 +393,12 @@ fn write_curve(text: &mut String, curve: &Curve, palette: Palette) {
 /// One bar per bin; an empty bin is a dot, the fullest has full height.
 fn bars(histogram: &Histogram) -> String {
     let most = histogram.counts.iter().copied().max().unwrap_or(0).max(1);
-    histogram
-        .counts
-        .iter()
-        .map(|&n| if n == 0 { '·' } else { BARS[((n as f64 / most as f64) * 7.0).round() as usize] })
-        .collect()
+    histogram.counts.iter().map(|n| bar(*n as f64 / most as f64)).collect()
+}
+
+/// A bar of a height from 0 to 1.
+fn bar(share: f64) -> char {
+    if share <= 0.0 { '·' } else { BARS[(share * 7.0).round().clamp(0.0, 7.0) as usize] }
 }
 
 #[cfg(test)]

@@ -22,8 +22,8 @@ impl Cell {
     }
 
     /// Looks like this.
-    pub(in crate::report) fn paint(self, paint: Paint) -> Self {
-        Self { paint: Some(paint), ..self }
+    pub(in crate::report) fn paint(self, paint: impl Into<Option<Paint>>) -> Self {
+        Self { paint: paint.into(), ..self }
     }
 }
 
@@ -66,17 +66,18 @@ pub(in crate::report) fn lines(rows: &[Vec<Cell>], palette: Palette) -> Vec<Stri
 }
 
 /// Writes a table with heads. The first column leans to the left, all others to the right.
-pub(in crate::report) fn table<const N: usize>(
+pub(in crate::report) fn table(
     out: &mut String,
     indent: &str,
-    heads: [&str; N],
-    rows: Vec<[String; N]>,
+    heads: &[&str],
+    rows: impl IntoIterator<Item = Vec<String>>,
 ) {
-    let cells = |row: [String; N]| -> Vec<Cell> {
+    let cells = |row: Vec<String>| -> Vec<Cell> {
         let cell = |(k, text): (usize, String)| if k == 0 { Cell::left(text) } else { Cell::right(text) };
         row.into_iter().enumerate().map(cell).collect()
     };
-    let rows: Vec<Vec<Cell>> = [heads.map(str::to_owned)].into_iter().chain(rows).map(cells).collect();
+    let heads = heads.iter().map(|head| (*head).to_owned()).collect();
+    let rows: Vec<Vec<Cell>> = std::iter::once(heads).chain(rows).map(cells).collect();
     for line in lines(&rows, Palette::PLAIN) {
         let _ = writeln!(out, "{indent}{line}");
     }

@@ -21,13 +21,8 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
             Some(Verdict::Undecided) => Paint::Caution,
             Some(Verdict::Satisfied) | None => Paint::Neutral,
         };
-        vec![
-            Cell::left(value),
-            Cell::left(estimate),
-            Cell::left(interval),
-            Cell::right(trials),
-            Cell::left(remark).paint(paint),
-        ]
+        let [value, estimate, interval] = [value, estimate, interval].map(Cell::left);
+        vec![value, estimate, interval, Cell::right(trials), Cell::left(remark).paint(paint)]
     };
     let rows: Vec<_> = every.parts.iter().enumerate().map(row).collect();
     table(text, &rows, palette);
@@ -42,11 +37,7 @@ fn whole(result: &QueryResult, every: &Every) -> String {
     let all = every.parts.len();
     let Some(choice) = result.rank.as_ref().and_then(|ranking| ranking.choice.as_ref()) else {
         let satisfied = every.parts.iter().filter(|part| part.verdict == Some(Verdict::Satisfied)).count();
-        return if result.verdict.is_some() {
-            format!("satisfied under {satisfied} of {all}")
-        } else {
-            String::new()
-        };
+        return result.verdict.map_or(String::new(), |_| format!("satisfied under {satisfied} of {all}"));
     };
     let best = || every.parts.iter().filter_map(|part| Some((part, part.best.as_ref()?)));
     let lost = best().map(|(part, (_, worth))| worth - part.figure.estimate).fold(0.0, f64::max);
@@ -71,7 +62,9 @@ pub(in crate::report) fn lines(result: &QueryResult) -> Vec<String> {
 }
 
 fn cells(result: &QueryResult, every: &Every, (at, part): (usize, &UnderOne)) -> [String; 5] {
-    let (estimate, interval) = printed(result, &part.figure);
+    // A value without a trial has no figure.
+    let has_figure = part.counts.trials > 0;
+    let (estimate, interval) = if has_figure { printed(result, &part.figure) } else { Default::default() };
     let choice = result.rank.as_ref().and_then(|ranking| ranking.choice.as_ref());
     let mut remark = match (&part.verdict, &part.best) {
         (Some(verdict), _) => verdict.name().to_owned(),
@@ -84,9 +77,5 @@ fn cells(result: &QueryResult, every: &Every, (at, part): (usize, &UnderOne)) ->
     }
     let trials = counted(part.counts.trials, "trial");
     let value = format!("{} = {}", part.setting.0, part.setting.1);
-    // A value without a trial has no figure.
-    if part.counts.trials == 0 {
-        return [value, String::new(), String::new(), trials, remark];
-    }
     [value, estimate, interval, trials, remark]
 }

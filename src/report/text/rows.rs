@@ -28,6 +28,11 @@ pub(super) fn intervals(text: &mut String, result: &QueryResult, palette: Palett
     }
 }
 
+/// A number in another unit, which has so many of the given one.
+pub(super) fn in_size(value: &Interval, size: f64) -> Interval {
+    Interval { estimate: value.estimate / size, low: value.low / size, high: value.high / size }
+}
+
 /// A number and its interval, each with its unit, of what has no result of its own.
 pub(in crate::report) fn in_unit(value: &Interval, unit: &str) -> (String, String) {
     let printed = interval(value, None);
@@ -38,8 +43,7 @@ pub(in crate::report) fn in_unit(value: &Interval, unit: &str) -> (String, Strin
 /// The estimate and its interval, each with its unit. Long times are in minutes or hours.
 pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
     let (unit, size) = readable(&result.unit, result.estimate.unwrap_or(result.low));
-    let scaled = Interval { estimate: value.estimate / size, low: value.low / size, high: value.high / size };
-    let printed = interval(&scaled, result.censored.map(|horizon| horizon / size));
+    let printed = interval(&in_size(value, size), result.censored.map(|horizon| horizon / size));
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let mut estimate = format!("{}{unit}", printed.estimate);
     if value.estimate == f64::INFINITY && result.censored.is_some() {
