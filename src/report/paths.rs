@@ -78,22 +78,15 @@ pub fn to_json(paths: &[PlannedPath]) -> String {
             "knots": knots,
         })
     };
-    let all = json!({ "roadmap": roadmap, "paths": paths.iter().map(one).collect::<Vec<_>>() });
-    format!("{all:#}\n")
+    format!("{:#}\n", json!({ "roadmap": roadmap, "paths": paths.iter().map(one).collect::<Vec<_>>() }))
 }
 
-/// A run of Algorithm 1 as printed: the pieces that it asked for, and what came of it.
-#[derive(Clone, Debug)]
-pub struct PrintedRun {
-    /// Its name.
-    pub name: String,
-    /// What came of it.
-    pub run: Printed,
-}
+/// A run of Algorithm 1 as printed: its name, and what came of it.
+pub type PrintedRun = (String, Printed);
 
 /// All runs: whether each returned, which limits it breaks, and its pieces.
 pub fn printed_to_json(runs: &[PrintedRun]) -> String {
-    let one = |PrintedRun { name, run }: &PrintedRun| match run {
+    let one = |(name, run): &PrintedRun| match run {
         Printed::NeverReturns(why) => json!({ "path": name, "returned": false, "why": why.phrase() }),
         Printed::Profile(profile) => json!({
             "path": name,
@@ -103,14 +96,13 @@ pub fn printed_to_json(runs: &[PrintedRun]) -> String {
             "points": profile.points(1),
         }),
     };
-    let all = json!({ "algorithm": "printed", "paths": runs.iter().map(one).collect::<Vec<_>>() });
-    format!("{all:#}\n")
+    format!("{:#}\n", json!({ "algorithm": "printed", "paths": runs.iter().map(one).collect::<Vec<_>>() }))
 }
 
 /// A row for each place of each run that returned, and one without numbers for each other run.
 pub fn printed_to_csv(runs: &[PrintedRun]) -> String {
     let mut out = "path,returned,breaks,t,s,v,a\n".to_owned();
-    for PrintedRun { name, run } in runs {
+    for (name, run) in runs {
         match run {
             Printed::NeverReturns(why) => {
                 let _ = writeln!(out, "{name},false,{},,,,", why.phrase());
@@ -128,7 +120,7 @@ pub fn printed_to_csv(runs: &[PrintedRun]) -> String {
 
 /// The profiles of the runs that returned; those that break a limit say so.
 pub fn printed_curves(runs: &[PrintedRun]) -> Vec<Curve> {
-    let curve = |PrintedRun { name, run }: &PrintedRun| {
+    let curve = |(name, run): &PrintedRun| {
         let Printed::Profile(profile) = run else { return None };
         let breaks = profile.violations().names();
         let name = if breaks.is_empty() { name.clone() } else { format!("{name}: {}", breaks.join(", ")) };
@@ -154,24 +146,16 @@ pub fn to_csv(paths: &[PlannedPath], dt: f64) -> String {
         for t in times(course, dt) {
             let motion = course.motion(t);
             let place = course.path.at(motion.distance);
-            let (d, v) = (place.direction, motion.speed);
+            let (d, v, at) = (place.direction, motion.speed, place.position);
             let across = Vec2::new(-d.y, d.x) * (v * v * place.curvature);
             let (velocity, acceleration) = (d * v, d * motion.acceleration + across);
             // The first joint is the start.
             let piece =
                 joints.partition_point(|joint| *joint <= motion.distance).clamp(1, joints.len().max(2) - 1);
-            let _ = writeln!(
-                out,
-                "{},{name},{t},{},{},{},{},{},{},{},{piece}",
-                path.agent,
-                motion.distance,
-                place.position.x,
-                place.position.y,
-                velocity.x,
-                velocity.y,
-                acceleration.x,
-                acceleration.y
-            );
+            let places = [t, motion.distance, at.x, at.y];
+            let motions = [velocity.x, velocity.y, acceleration.x, acceleration.y];
+            let numbers = [places, motions].concat().iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+            let _ = writeln!(out, "{},{name},{numbers},{piece}", path.agent);
         }
     }
     out
@@ -225,8 +209,7 @@ pub fn map_of_shape(path: &PlannedPath, instants: &[f64], title: &str) -> Pictur
     let joints: Vec<Vec2> = line.joints().iter().map(|joint| line.at(*joint).position).collect();
     let corners = line.pieces().iter().flat_map(|piece| [piece.start().position, piece.end().position]);
     let around = Bounds::around(corners.chain(path.corners.iter().copied()));
-    let origin = Bounds { low: Vec2::zeros(), high: Vec2::zeros() };
-    let mut drawing = Drawing::new(around.unwrap_or(origin));
+    let mut drawing = Drawing::new(around.unwrap_or_default());
     drawing.line(&path.corners, Ink::ROADMAP);
     draw_paths(&mut drawing, std::slice::from_ref(path), instants);
     for joint in joints {

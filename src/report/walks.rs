@@ -17,8 +17,6 @@ use std::path::Path;
 
 /// Level of the tests that sentences speak of.
 const LEVEL: f64 = 0.05;
-/// Of no walks.
-const EMPTY: Bounds = Bounds { low: Vec2::new(0.0, 0.0), high: Vec2::new(0.0, 0.0) };
 
 /// A set of walks and the name of its file.
 #[derive(Clone, Copy, Debug)]
@@ -210,7 +208,7 @@ pub fn draw(scenario: Option<&Scenario>, sets: &[WalkSet<'_>]) -> Picture {
         let own = walks(set);
         let mut drawing = match scenario {
             Some(scenario) => plan::drawn(scenario, all.iter().copied()),
-            None => Drawing::new(Bounds::around(all.iter().copied()).unwrap_or(EMPTY)),
+            None => Drawing::new(Bounds::around(all.iter().copied()).unwrap_or_default()),
         };
         corridor(&mut drawing, &own);
         let file = Path::new(set.file).file_stem().map_or(set.file.into(), |stem| stem.to_string_lossy());

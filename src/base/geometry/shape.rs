@@ -20,7 +20,7 @@ pub enum Shape {
 }
 
 /// The smallest upright rectangle around something.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Lower left corner.
     pub low: Vec2,

@@ -54,26 +54,23 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
     };
     let ends = (arguments.start_speed, arguments.end_speed);
     let optimum = optimal(&stretches, limits, ends.0, ends.1).map_err(wrong)?;
-    let mut profiles = Vec::new();
+    let mut courses: Vec<Course> = Vec::new();
     for number in 0..arguments.profiles {
-        profiles.push(profile(arguments, &stretches, limits, number).map_err(wrong)?);
+        let varied = profile(arguments, &stretches, limits, number).map_err(wrong)?;
+        let course = || Course { path: path.clone(), optimum: optimum.clone(), varied: varied.clone() };
+        courses.extend(varied.is_some().then(course));
     }
-    let courses: Vec<Course> = profiles
-        .iter()
-        .filter_map(Clone::clone)
-        .map(|varied| Course { path: path.clone(), optimum: optimum.clone(), varied: Some(varied) })
-        .collect();
     let runs = runs(arguments, &stretches, limits).map_err(wrong)?;
     let title = match (&arguments.shape, &arguments.waypoints) {
         (Some(shape), _) => shape.clone(),
         _ => "path through way points".to_owned(),
     };
+    let alone = || Course { path: path.clone(), optimum: optimum.clone(), varied: None };
     let curves = || {
         let drawn = courses.iter().zip(1..).map(|(course, k)| paths::curve(format!("profile {k}"), course));
         let drawn: Vec<_> = drawn.chain(paths::printed_curves(&runs)).collect();
         let is_alone = drawn.is_empty() && arguments.by != SpeedLaw::Printed;
-        let fastest = Course { path: path.clone(), optimum: optimum.clone(), varied: None };
-        if is_alone { vec![paths::curve("fastest".to_owned(), &fastest)] } else { drawn }
+        if is_alone { vec![paths::curve("fastest".to_owned(), &alone())] } else { drawn }
     };
     let named = |(k, course): (usize, &Course)| PlannedPath {
         agent: "shape".to_owned(),
@@ -82,7 +79,6 @@ pub(super) fn of_shape(arguments: &PathCommand) -> Result<String, Diagnostic> {
         corners: corners.clone(),
         course: course.clone(),
     };
-    let alone = || Course { path: path.clone(), optimum: optimum.clone(), varied: None };
     match (arguments.format, arguments.figure) {
         (PathFormat::Text, _) => Ok(tell_shape(arguments, &optimum, limits, &courses, &runs)),
         (PathFormat::Svg, figure) => {
@@ -125,7 +121,7 @@ fn runs(
         let draw = |k: u32| stream.uniform(number * DRAWS + k % DRAWS);
         let pieces = arguments.pieces.map(|pieces| pieces as usize);
         let run = printed(stretches, limits, arguments.start_speed, arguments.end_speed, pieces, draw)?;
-        Ok(PrintedRun { name: format!("profile {}", number + 1), run })
+        Ok((format!("profile {}", number + 1), run))
     };
     (0..count).map(run).collect()
 }
@@ -168,7 +164,7 @@ fn tell_shape(
     let mut out = format!("optimal_s {:.17}\n", optimum.duration());
     let _ = writeln!(out, "length {:.6} m\nspeeds at the joints {} m/s", optimum.length(), speeds.join(", "));
     if arguments.by == SpeedLaw::Printed {
-        let profiles = runs.iter().filter_map(|one| match &one.run {
+        let profiles = runs.iter().filter_map(|(_, run)| match run {
             Printed::Profile(profile) => Some(profile.violations().any()),
             Printed::NeverReturns(_) => None,
         });
@@ -176,7 +172,7 @@ fn tell_shape(
         let (legal, returned) = (legal.len(), legal.len() + broken.len());
         let _ =
             writeln!(out, "{returned} of {} profiles returned, {legal} of them keep every limit", runs.len());
-        for PrintedRun { name, run } in runs.iter().take(SHOWN) {
+        for (name, run) in runs.iter().take(SHOWN) {
             let _ = match run {
                 Printed::NeverReturns(why) => writeln!(out, "  {name:<12} never returns: {}", why.phrase()),
                 Printed::Profile(profile) if profile.violations().any() => {

@@ -132,15 +132,10 @@ const RADIUS: f64 = 0.2;
 /// The picture.
 pub fn to_svg(report: &InferredFile) -> Picture {
     let found = report.inference;
-    let places = found.points.iter().map(|one| one.point.position);
-    let low = places.clone().fold(Vec2::repeat(f64::INFINITY), |a, p| a.inf(&p));
-    let high = places.fold(Vec2::repeat(f64::NEG_INFINITY), |a, p| a.sup(&p));
-    let bounds = if found.points.is_empty() {
-        Bounds { low: Vec2::zeros(), high: Vec2::repeat(1.0) }
-    } else {
-        Bounds { low: low - Vec2::repeat(0.5), high: high + Vec2::repeat(0.5) }
-    };
-    let mut drawing = Drawing::new(bounds);
+    let bounds = Bounds::around(found.points.iter().map(|one| one.point.position));
+    let room = Vec2::repeat(0.5);
+    let bounds = bounds.map(|Bounds { low, high }| Bounds { low: low - room, high: high + room });
+    let mut drawing = Drawing::new(bounds.unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::repeat(1.0) }));
     for instant in found.points.chunk_by(|a, b| a.point.time == b.point.time) {
         let mut groups = BTreeMap::<u64, (Vec2, f64)>::new();
         for one in instant {

@@ -178,31 +178,22 @@ impl Layout<'_> {
             }
             Mark::Upright(x, [low, middle, high], k) => {
                 let ((at, from), (_, to)) = (self.at(*x, *low), self.at(*x, *high));
-                self.whisker(&format!("M{at:.1},{from:.1}V{to:.1}m-3,0h6M{:.1},{from:.1}h6", at - 3.0), *k);
-                if !middle.is_nan() {
-                    self.dot(self.at(*x, *middle), *k);
-                }
+                let path = format!("M{at:.1},{from:.1}V{to:.1}m-3,0h6M{:.1},{from:.1}h6", at - 3.0);
+                self.interval(&path, self.at(*x, *middle), *k);
             }
             Mark::Lying(row, [low, middle, high], k) => {
                 let y = height_of_row(*row);
                 let ((from, _), (to, _)) = (self.at(*low, 0.0), self.at(*high, 0.0));
-                self.whisker(&format!("M{from:.1},{y:.1}H{to:.1}m0,-3v6M{from:.1},{:.1}v6", y - 3.0), *k);
-                if !middle.is_nan() {
-                    self.dot((self.at(*middle, 0.0).0, y), *k);
-                }
+                let path = format!("M{from:.1},{y:.1}H{to:.1}m0,-3v6M{from:.1},{:.1}v6", y - 3.0);
+                self.interval(&path, (self.at(*middle, 0.0).0, y), *k);
             }
             Mark::Cloud(points, k) => {
                 let pixels = points.iter().map(|(x, y)| self.at(*x, *y));
                 let mut places: Vec<String> = pixels.map(|(x, y)| format!("M{x:.1},{y:.1}h0")).collect();
                 places.sort_unstable();
                 places.dedup();
-                let (colour, _) = LINES[k % LINES.len()];
-                let _ = writeln!(
-                    self.body,
-                    "<path d=\"{}\" fill=\"none\" class=\"line-{}\" stroke=\"{colour}\" stroke-width=\"5\" stroke-linecap=\"round\" stroke-opacity=\"0.5\"/>",
-                    places.concat(),
-                    k % LINES.len()
-                );
+                let shape = "stroke-width=\"5\" stroke-linecap=\"round\" stroke-opacity=\"0.5\"";
+                self.path(&places.concat(), *k, shape);
             }
             Mark::Dot(x, y, k) => self.dot(self.at(*x, *y), *k),
             Mark::Level(y, name) => {
@@ -217,13 +208,17 @@ impl Layout<'_> {
         }
     }
 
-    fn whisker(&mut self, path: &str, k: usize) {
-        let (colour, _) = LINES[k % LINES.len()];
-        let _ = writeln!(
-            self.body,
-            "<path d=\"{path}\" fill=\"none\" class=\"line-{}\" stroke=\"{colour}\" stroke-width=\"1.2\"/>",
-            k % LINES.len()
-        );
+    /// A path in the colour of a style.
+    fn path(&mut self, path: &str, k: usize, shape: &str) {
+        let _ = writeln!(self.body, "<path d=\"{path}\" fill=\"none\" {} {shape}/>", stroke(k));
+    }
+
+    /// The ends of an interval, and its estimate if there is one.
+    fn interval(&mut self, ends: &str, estimate: (f64, f64), k: usize) {
+        self.path(ends, k, "stroke-width=\"1.2\"");
+        if !estimate.0.is_nan() && !estimate.1.is_nan() {
+            self.dot(estimate, k);
+        }
     }
 
     /// Circle, square, triangle or diamond.
@@ -291,8 +286,12 @@ fn height_of_row(k: usize) -> f64 {
 }
 
 fn style(k: usize) -> String {
-    let (colour, shape) = LINES[k % LINES.len()];
-    format!("class=\"line-{}\" stroke=\"{colour}\" {shape}", k % LINES.len())
+    format!("{} {}", stroke(k), LINES[k % LINES.len()].1)
+}
+
+fn stroke(k: usize) -> String {
+    let (colour, _) = LINES[k % LINES.len()];
+    format!("class=\"line-{}\" stroke=\"{colour}\"", k % LINES.len())
 }
 
 fn filled(k: usize) -> String {
@@ -300,12 +299,13 @@ fn filled(k: usize) -> String {
     format!("class=\"fill-{}\" fill=\"{colour}\"", k % LINES.len())
 }
 
-fn text(body: &mut String, (x, y): (f64, f64), anchor: &str, text: &str) {
-    let _ = writeln!(
-        body,
-        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"#202020\">{}</text>",
-        escape(text)
-    );
+fn text(body: &mut String, at: (f64, f64), anchor: &str, text: &str) {
+    write_text(body, at, &format!(" text-anchor=\"{anchor}\" fill=\"#202020\""), text);
+}
+
+/// Writes a text with further attributes, which begin with a blank.
+pub(super) fn write_text(body: &mut String, (x, y): (f64, f64), attributes: &str, text: &str) {
+    let _ = writeln!(body, "<text x=\"{x:.1}\" y=\"{y:.1}\"{attributes}>{}</text>", escape(text));
 }
 
 fn shortened(name: &str) -> String {

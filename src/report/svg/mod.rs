@@ -10,6 +10,7 @@ pub mod steps;
 use super::escape::escape;
 use super::number::plain;
 use crate::base::geometry::{Bounds, Shape, Vec2};
+use frame::write_text;
 use std::fmt::Write as _;
 
 /// Width and height of the longer side, pixels.
@@ -240,12 +241,7 @@ impl Plate {
         self.taken.push(at);
         // A white rim below the letters, drawn first: not every program knows `paint-order`.
         for rim in [" stroke=\"#ffffff\" stroke-width=\"3\"", ""] {
-            let _ = writeln!(
-                self.body,
-                "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\"{rim}>{}</text>",
-                at[3] - 2.0,
-                escape(text)
-            );
+            write_text(&mut self.body, (x, at[3] - 2.0), &format!(" text-anchor=\"middle\"{rim}"), text);
         }
     }
 
@@ -256,13 +252,7 @@ impl Plate {
         } else {
             self.spot(MARGIN + 12.0, y, ink);
         }
-        let _ = writeln!(
-            self.body,
-            "<text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-            MARGIN + 32.0,
-            y + 4.0,
-            escape(name)
-        );
+        write_text(&mut self.body, (MARGIN + 32.0, y + 4.0), "", name);
     }
 
     /// Ticks, numbers and names at the left and lower rim.
@@ -275,37 +265,28 @@ impl Plate {
         while step * self.scale < 36.0 && step < 1e9 {
             step = round_step(step * 2.5);
         }
+        let middle = " text-anchor=\"middle\" fill=\"#404040\"";
         let _ = writeln!(
             self.body,
-            "<path d=\"M{left:.1},{top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#808080\"/>\n\
-             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#404040\">x (m)</text>\n\
-             <text transform=\"translate(10 {:.1}) rotate(-90)\" text-anchor=\"middle\" fill=\"#404040\">y (m)</text>",
-            0.5 * (left + right),
-            bottom + 29.0,
-            0.5 * (top + bottom)
+            "<path d=\"M{left:.1},{top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#808080\"/>"
         );
+        write_text(&mut self.body, (0.5 * (left + right), bottom + 29.0), middle, "x (m)");
+        let turned = format!("translate(10 {:.1}) rotate(-90)", 0.5 * (top + bottom));
+        let _ = writeln!(self.body, "<text transform=\"{turned}\"{middle}>y (m)</text>");
         let ticks = |from: f64, to: f64| {
             ((from / step).ceil() as i64..=(to / step).floor() as i64).map(|k| k as f64 * step)
         };
         let label = |v: f64| plain((v * 1e6).round() / 1e6);
         for x in ticks(low.x, high.x) {
             let (at, _) = self.at(Vec2::new(x, low.y));
-            let _ = writeln!(
-                self.body,
-                "<path d=\"M{at:.1},{bottom:.1}v4\" stroke=\"#808080\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#404040\">{}</text>",
-                bottom + 15.0,
-                label(x)
-            );
+            let _ = write!(self.body, "<path d=\"M{at:.1},{bottom:.1}v4\" stroke=\"#808080\"/>");
+            write_text(&mut self.body, (at, bottom + 15.0), middle, &label(x));
         }
         for y in ticks(low.y, high.y) {
             let (_, at) = self.at(Vec2::new(low.x, y));
-            let _ = writeln!(
-                self.body,
-                "<path d=\"M{left:.1},{at:.1}h-4\" stroke=\"#808080\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#404040\">{}</text>",
-                left - 6.0,
-                at + 4.0,
-                label(y)
-            );
+            let _ = write!(self.body, "<path d=\"M{left:.1},{at:.1}h-4\" stroke=\"#808080\"/>");
+            let end = " text-anchor=\"end\" fill=\"#404040\"";
+            write_text(&mut self.body, (left - 6.0, at + 4.0), end, &label(y));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Pictures: one or several plans or charts as one SVG, for a screen, or as wide as a column of a page.
 
 use super::Drawing;
-use super::frame::{Frame, LETTER, LINE, WIDTH, cut};
+use super::frame::{Frame, LETTER, LINE, WIDTH, cut, write_text};
 use crate::report::escape::escape;
 use std::fmt::Write as _;
 
@@ -100,13 +100,7 @@ fn plates(plans: &[(String, Drawing)], wanted: Option<f64>) -> (String, f64, f64
             let (drawn, [wide, high]) = plan.drawn(wanted.map(|width| width / columns), columns);
             if head > 0.0 {
                 let letter = char::from(b'a' + (2 * row + k) as u8);
-                let _ = writeln!(
-                    body,
-                    "<text x=\"{:.1}\" y=\"{:.1}\">({letter}) {}</text>",
-                    x + 12.0,
-                    y + LINE,
-                    escape(name)
-                );
+                write_text(&mut body, (x + 12.0, y + LINE), "", &format!("({letter}) {name}"));
             }
             let _ = writeln!(body, "<g transform=\"translate({x:.1} {:.1})\">\n{drawn}</g>", y + head);
             (x, highest) = (x + wide, highest.max(high));

@@ -51,9 +51,8 @@ impl Scale {
         let (low, high) = if low < high { (low, high) } else { (0.5 * high.max(2.0), 2.0 * high.max(2.0)) };
         let factors: &[f64] = if high / low > power(DECADES) { &[1.0] } else { &[1.0, 2.0, 5.0] };
         let tick = |k: i32| factors.iter().map(move |factor| factor * power(k));
-        let ticks = (exponent(low)..=exponent(high))
-            .flat_map(tick)
-            .filter(|tick| (low..=high * 1.000_001).contains(tick));
+        let all = (exponent(low)..=exponent(high)).flat_map(tick);
+        let ticks = all.filter(|tick| (low..=high * 1.000_001).contains(tick));
         Self { low, high, ticks: ticks.collect(), is_log: true }
     }
 
@@ -95,11 +94,8 @@ fn rounded(tick: f64) -> f64 {
 /// The smallest of 1, 2, 5, 10 times a power of ten that is not below a length.
 fn round_step(length: f64) -> f64 {
     let power = power(exponent(length));
-    [1.0, 2.0, 5.0]
-        .map(|factor| factor * power)
-        .into_iter()
-        .find(|step| *step >= length)
-        .unwrap_or(10.0 * power)
+    let steps = [1.0, 2.0, 5.0].map(|factor| factor * power);
+    steps.into_iter().find(|step| *step >= length).unwrap_or(10.0 * power)
 }
 
 #[cfg(test)]

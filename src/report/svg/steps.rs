@@ -16,8 +16,7 @@ pub fn draw(steps: &[RecordedStep]) -> Picture {
     };
     let paths: Vec<(Foot, Vec<Vec2>)> = steps.iter().map(|step| (step.foot, path(step))).collect();
     let all = paths.iter().flat_map(|(_, path)| path.iter().copied()).chain([Vec2::zeros()]);
-    let zero = Bounds { low: Vec2::zeros(), high: Vec2::zeros() };
-    let mut drawing = Drawing::new(Bounds::around(all).unwrap_or(zero));
+    let mut drawing = Drawing::new(Bounds::around(all).unwrap_or_default());
     for (foot, path) in &paths {
         drawing.line(path, if *foot == Foot::Left { Ink::LEFT_STEP } else { Ink::RIGHT_STEP });
     }
