@@ -25,11 +25,8 @@ pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, hori
     if marks.is_empty() {
         return String::new();
     }
-    let numbers = marks
-        .iter()
-        .flat_map(|m| [m.value.estimate, m.value.low, m.value.high])
-        .chain(threshold)
-        .chain(horizon);
+    let ends = marks.iter().flat_map(|m| [m.value.estimate, m.value.low, m.value.high]);
+    let numbers = ends.chain(threshold).chain(horizon);
     let axis = if unit.is_empty() { Scale::probabilities(numbers) } else { Scale::linear(numbers) };
     // Dots and words at the ends of the axis have room.
     let x = |value: f64| 3.0 + 94.0 * axis.share(value);
@@ -42,10 +39,10 @@ pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, hori
     }
     if let Some(threshold) = threshold {
         let at = x(threshold);
+        let title = format!("<title>threshold {}</title>", plain(threshold));
         let _ = write!(
             below,
-            "<line class=\"threshold\" x1=\"{at:.2}%\" x2=\"{at:.2}%\" y1=\"0\" y2=\"100%\"><title>threshold {}</title></line>",
-            plain(threshold)
+            "<line class=\"threshold\" x1=\"{at:.2}%\" x2=\"{at:.2}%\" y1=\"0\" y2=\"100%\">{title}</line>"
         );
     }
     let mut rows = String::from("<div class=\"intervals\">\n");

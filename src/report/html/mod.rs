@@ -8,7 +8,7 @@ mod player;
 mod section;
 
 use super::number::{counted, duration};
-use super::text;
+use super::{phrase, text};
 use crate::engine::outcome::{AskedQuery, CallResult, QueryResult, Witness};
 use crate::engine::traces::Traces;
 use crate::syntax::source::Source;
@@ -69,24 +69,17 @@ pub struct Table {
 
 #[derive(Template)]
 #[template(path = "report.html")]
-struct Html {
-    title: String,
+struct Html<'r> {
+    run: &'r CallResult,
+    title: &'r str,
     policy: String,
-    style: &'static str,
-    script: &'static str,
     about: String,
-    tally: Vec<(String, &'static str, String)>,
-    sections: Vec<Section>,
+    sections: Vec<Section<'r>>,
     tables: Vec<Table>,
-    findings: Vec<(bool, String)>,
-    warnings: Vec<String>,
-    interrupted: bool,
-    failure: Option<String>,
     player: Option<Player>,
     crowds: Vec<Crowd>,
     crowds_note: String,
     texts: Vec<(String, String)>,
-    replay: String,
 }
 
 /// A page.
@@ -135,31 +128,18 @@ pub fn page(page: Page<'_>) -> String {
         line: links.line(&sources, asked[number]).filter(is_there).map(str::to_owned),
         ..section::section(group, &played)
     });
-    let sections = sections.collect();
     let mut about = format!("seed {}, smc {}", run.seed, run.version);
     if !run.results.is_empty() || run.trials > 0 {
         about += &format!(", {} in {}", counted(run.trials, "trial"), duration(run.elapsed_s));
     }
-    let tally = text::tally(&run).into_iter();
-    let finding = |finding: &crate::engine::outcome::Finding| {
-        let hint = finding.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
-        (finding.error, finding.line() + &hint)
-    };
     let html = Html {
-        title: if run.scenario.is_empty() { "smc".to_owned() } else { run.scenario.clone() },
+        run: &run,
+        title: if run.scenario.is_empty() { "smc" } else { &run.scenario },
         policy: policy(SCRIPT, STYLE),
-        style: STYLE,
-        script: SCRIPT,
         about,
-        tally: tally.map(|(n, word, _)| (n.to_string(), word, word.replace(' ', "-"))).collect(),
-        sections,
+        sections: sections.collect(),
         tables,
-        findings: run.diagnostics.iter().map(finding).collect(),
-        warnings: run.warnings.clone(),
-        interrupted: run.interrupted,
-        failure: run.failure.as_ref().map(crate::engine::outcome::Failure::message),
         texts,
-        replay: run.replay.clone(),
         player,
         crowds,
         crowds_note,

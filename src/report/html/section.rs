@@ -8,21 +8,20 @@ use crate::engine::outcome::{
 };
 use crate::report::number::{count, counted, plain};
 use crate::report::palette::Paint;
-use crate::report::phrase::{self, certified, endless, one_line, settings};
+use crate::report::phrase::{self, endless, one_line, settings};
 use crate::report::svg::scale::Scale;
 use crate::report::{figure, json, text};
 use std::fmt::Write as _;
 
 /// What the page says of a query.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Section {
+pub(super) struct Section<'r> {
     /// Its anchor.
     pub(super) id: String,
     /// The anchor of the line of the query, if the page has its text.
     pub(super) line: Option<String>,
-    /// The word of the verdict, and its class.
+    /// The word of the verdict, which is also its class.
     pub(super) word: &'static str,
-    pub(super) class: String,
     pub(super) query: String,
     pub(super) place: String,
     /// The answer in the table of all queries, and how sure it is.
@@ -34,7 +33,7 @@ pub(super) struct Section {
     pub(super) intervals: String,
     /// What a ranking recommends.
     pub(super) choice: Option<Recommended>,
-    pub(super) results: Vec<Facts>,
+    pub(super) results: Vec<Facts<'r>>,
 }
 
 /// The recommendation of a ranking: an option between two texts.
@@ -46,48 +45,35 @@ pub(super) struct Recommended {
 }
 
 /// What is said of one result under the chart.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Facts {
+#[derive(Clone, Debug)]
+pub(super) struct Facts<'r> {
+    pub(super) of: &'r QueryResult,
     /// The settings where there are several; else empty.
     pub(super) head: String,
-    /// The figures under each value of `under every`.
-    pub(super) every: Vec<String>,
-    pub(super) certified: String,
-    /// How often such verdicts were true.
-    pub(super) model: Option<String>,
-    pub(super) given: Option<String>,
-    pub(super) trials: String,
     /// The histogram as SVG; may be empty.
     pub(super) histogram: String,
     /// Distribution function and evidence as SVG; may be empty.
     pub(super) figure: String,
-    pub(super) warnings: Vec<String>,
-    pub(super) witnesses: Vec<Shown>,
-    pub(super) replay: String,
+    pub(super) witnesses: Vec<Shown<'r>>,
 }
 
 /// A witness.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Shown {
+#[derive(Clone, Debug)]
+pub(super) struct Shown<'r> {
+    pub(super) of: &'r Witness,
     pub(super) moment: String,
-    pub(super) what: String,
-    pub(super) command: String,
     /// Its number in the player, if it is there.
     pub(super) played: Option<usize>,
 }
 
 /// What a page says of a query; `played` gives the number of a witness in the player, by the place of its result.
-pub(super) fn section(
-    group: &[(usize, &QueryResult)],
+pub(super) fn section<'r>(
+    group: &[(usize, &'r QueryResult)],
     played: &impl Fn(usize, &Witness) -> Option<usize>,
-) -> Section {
+) -> Section<'r> {
     let Some((_, first)) = group.first() else { return Section::default() };
     let words = group.iter().map(|(_, result)| word(result));
     let word = words.max_by_key(|word| severity(word)).unwrap_or("estimated");
-    let place = match &first.asked {
-        asked if asked.file.is_empty() => String::new(),
-        asked => format!("{}:{}", asked.file, asked.line),
-    };
     let swept = group.len() > 1;
     let marks: Vec<Mark> = if swept {
         group.iter().filter_map(|(_, result)| mark(result, &settings(result))).collect()
@@ -102,9 +88,8 @@ pub(super) fn section(
     let is_one = group.iter().all(|(_, result)| result.interval == first.interval);
     Section {
         word,
-        class: word.replace(' ', "-"),
         query: one_line(&first.asked.text),
-        place,
+        place: phrase::place(first).unwrap_or_default(),
         answer: if swept { counted(group.len() as u64, "setting") } else { answer(first) },
         sure: if swept { String::new() } else { sure(first) },
         chart: chart::intervals(&marks, &first.unit, threshold, first.censored),
@@ -151,11 +136,10 @@ fn recommended(result: &QueryResult) -> Option<Recommended> {
             let tied = if ranking.tied { "; options marked tied have the same certificate" } else { "" };
             Recommended { before: "Choose ", option: choice.clone(), after: format!("{means}{tied}.") }
         }
-        Some(choice) => Recommended {
-            before: "",
-            option: choice.clone(),
-            after: " is best so far, but nothing is certified.".to_owned(),
-        },
+        Some(choice) => {
+            let after = " is best so far, but nothing is certified.".to_owned();
+            Recommended { before: "", option: choice.clone(), after }
+        }
     })
 }
 
@@ -173,36 +157,26 @@ fn word(result: &QueryResult) -> &'static str {
     result.verdict.map_or(estimated, Verdict::name)
 }
 
-fn facts(
+fn facts<'r>(
     place: usize,
-    result: &QueryResult,
+    result: &'r QueryResult,
     swept: bool,
     played: &impl Fn(usize, &Witness) -> Option<usize>,
-) -> Facts {
+) -> Facts<'r> {
     let histogram = result.distribution.as_ref().and_then(|d| d.histogram.as_ref());
     let histogram = histogram.map(|bins| bars(bins, &result.unit, endless(result)));
-    let witness = |witness: &Witness| {
-        let Witness { shows, trial, time, unit, what, command, .. } = witness;
-        let moment = format!(
-            "{} in trial {} at {}",
-            text::shown(*shows, result.of.is_some()),
-            count(*trial),
-            text::moment(*time, unit)
-        );
-        Shown { moment, what: what.clone(), command: command.clone(), played: played(place, witness) }
+    let witness = |witness: &'r Witness| {
+        let Witness { shows, trial, time, unit, .. } = witness;
+        let (word, at) = (text::shown(*shows, result.of.is_some()), text::moment(*time, unit));
+        let moment = format!("{word} in trial {} at {at}", count(*trial));
+        Shown { of: witness, moment, played: played(place, witness) }
     };
     Facts {
+        of: result,
         head: if swept { settings(result) } else { String::new() },
-        every: text::under_each(result),
-        certified: certified(result),
-        model: result.model.as_ref().map(phrase::model),
-        given: result.asked.given.clone(),
-        trials: text::trials(result),
         histogram: histogram.unwrap_or_default(),
         figure: if swept { String::new() } else { figure::of_result(&json::result(result)) },
-        warnings: result.warnings.clone(),
         witnesses: result.witnesses.iter().map(witness).collect(),
-        replay: result.replay.clone(),
     }
 }
 
@@ -223,11 +197,8 @@ fn marks(result: &QueryResult) -> Vec<Mark> {
     }
     if let Some(sides) = &result.compare {
         let row = |side: &Side, tone| labelled(result, &side.label, side.value, tone, "");
-        return vec![
-            row(&sides.first, Paint::Neutral),
-            row(&sides.second, Paint::Neutral),
-            row(&sides.difference, Paint::Good),
-        ];
+        let [first, second] = [&sides.first, &sides.second].map(|side| row(side, Paint::Neutral));
+        return vec![first, second, row(&sides.difference, Paint::Good)];
     }
     mark(result, "").into_iter().collect()
 }
@@ -259,35 +230,25 @@ fn bars(histogram: &Histogram, unit: &str, endless: &str) -> String {
     let bin = (histogram.high - histogram.low) / bins;
     let width = WIDTH / bins;
     let height = Scale::linear([0.0, most as f64]);
-    let mut svg = format!(
-        "<svg viewBox=\"0 0 {:.0} {:.0}\" width=\"{:.0}\" role=\"img\">\n",
-        WIDTH + 2.0 * MARGIN,
-        HEIGHT + 22.0,
-        WIDTH + 2.0 * MARGIN
-    );
+    let (wide, high) = (WIDTH + 2.0 * MARGIN, HEIGHT + 22.0);
+    let mut svg = format!("<svg viewBox=\"0 0 {wide:.0} {high:.0}\" width=\"{wide:.0}\" role=\"img\">\n");
     for (k, &n) in histogram.counts.iter().enumerate() {
         let tall = HEIGHT * height.share(n as f64);
+        let (x, y, wide) = (MARGIN + width * k as f64, HEIGHT - tall, (width - 1.0).max(0.5));
         let from = histogram.low + bin * k as f64;
+        let [from, to] = [from, from + bin].map(plain);
         let _ = writeln!(
             svg,
-            "<rect class=\"bar\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{tall:.1}\">\
-             <title>{} to {} {unit}: {}</title></rect>",
-            MARGIN + width * k as f64,
-            HEIGHT - tall,
-            (width - 1.0).max(0.5),
-            plain(from),
-            plain(from + bin),
+            "<rect class=\"bar\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{wide:.1}\" height=\"{tall:.1}\">\
+             <title>{from} to {to} {unit}: {}</title></rect>",
             count(n)
         );
     }
     for (at, value) in [(MARGIN, histogram.low), (MARGIN + WIDTH, histogram.high)] {
         let class = if at > MARGIN { "last" } else { "first" };
-        let _ = writeln!(
-            svg,
-            "<text class=\"tick {class}\" x=\"{at:.1}\" y=\"{:.1}\">{} {unit}</text>",
-            HEIGHT + 16.0,
-            plain(value)
-        );
+        let (y, value) = (HEIGHT + 16.0, plain(value));
+        let _ =
+            writeln!(svg, "<text class=\"tick {class}\" x=\"{at:.1}\" y=\"{y:.1}\">{value} {unit}</text>");
     }
     svg.push_str("</svg>\n");
     for (some, where_) in [(histogram.below, "at -∞"), (histogram.beyond, endless)] {
