@@ -90,7 +90,7 @@ fn finding(finding: &Finding) -> Value {
 }
 
 /// The fields of several objects in one; `null` has none.
-fn joined<const N: usize>(parts: [Value; N]) -> Value {
+pub(super) fn joined<const N: usize>(parts: [Value; N]) -> Value {
     let fields = |part: Value| if let Value::Object(fields) = part { fields } else { Map::new() };
     Value::Object(parts.into_iter().flat_map(fields).collect())
 }

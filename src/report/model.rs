@@ -47,17 +47,12 @@ fn scenario(out: &mut String, world: &World) {
     let title = if scenario.title.is_empty() { "(without a title)" } else { &scenario.title };
     let _ = writeln!(out, "{title}");
     let end = scenario.clock.seconds(scenario.horizon);
-    match scenario.clock {
-        Clock::Stepped(step) => {
-            let _ = writeln!(out, "  horizon {end} s, step {step} s: {} steps", scenario.horizon.0);
-        }
-        Clock::Steps => {
-            let _ = writeln!(out, "  horizon {} steps", scenario.horizon.0);
-        }
-        Clock::Jumps(_) => {
-            let _ = writeln!(out, "  horizon {end} s, continuous time");
-        }
-    }
+    let steps = scenario.horizon.0;
+    let _ = match scenario.clock {
+        Clock::Stepped(step) => writeln!(out, "  horizon {end} s, step {step} s: {steps} steps"),
+        Clock::Steps => writeln!(out, "  horizon {steps} steps"),
+        Clock::Jumps(_) => writeln!(out, "  horizon {end} s, continuous time"),
+    };
     for (name, value) in &world.settings {
         let _ = writeln!(out, "  set {name} = {value}");
     }
@@ -69,7 +64,10 @@ fn scenario(out: &mut String, world: &World) {
         let _ = writeln!(out, "  let {name}");
     }
     processes(out, written);
-    scene(out, scenario);
+    let scene = scene(scenario);
+    if !scene.is_empty() {
+        let _ = write!(out, "\nScene\n{scene}");
+    }
     if !scenario.agents.is_empty() || written.processes.is_empty() {
         people(out, world);
     }
@@ -85,17 +83,8 @@ fn processes(out: &mut String, written: &Written) {
     }
 }
 
-fn scene(out: &mut String, scenario: &Scenario) {
-    let scene = &scenario.scene;
-    if scene.barriers.is_empty()
-        && scene.regions.is_empty()
-        && scene.points.is_empty()
-        && scene.lines.is_empty()
-        && scene.periods.are_none()
-    {
-        return;
-    }
-    let _ = writeln!(out, "\nScene");
+fn scene(scenario: &Scenario) -> String {
+    let (scene, mut out) = (&scenario.scene, String::new());
     for (axis, period) in [("x", scene.periods.x), ("y", scene.periods.y)] {
         if let Some(period) = period {
             let _ = writeln!(out, "  periodic {axis}: {} .. {} m", number(period.low), number(period.high()));
@@ -105,13 +94,8 @@ fn scene(out: &mut String, scenario: &Scenario) {
         let name = if barrier.name.is_empty() { String::new() } else { format!(" {}", barrier.name) };
         let _ = match &barrier.obstacle {
             Obstacle::Wall(segments) => {
-                let length: f64 = segments.iter().map(Segment::length).sum();
-                writeln!(
-                    out,
-                    "  wall{name}: {}, {} m",
-                    counted(segments.len() as u64, "segment"),
-                    number(length)
-                )
+                let length = number(segments.iter().map(Segment::length).sum());
+                writeln!(out, "  wall{name}: {}, {length} m", counted(segments.len() as u64, "segment"))
             }
             Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(solid)),
         };
@@ -126,6 +110,7 @@ fn scene(out: &mut String, scenario: &Scenario) {
         let Segment { a, b } = line.segment;
         let _ = writeln!(out, "  line {}: {} -- {} m", line.name, point(a), point(b));
     }
+    out
 }
 
 fn people(out: &mut String, world: &World) {
@@ -148,49 +133,37 @@ fn people(out: &mut String, world: &World) {
         } else {
             first.name.clone()
         };
-        match scenario.sources.iter().find(|source| source.name == stem) {
+        let _ = match scenario.sources.iter().find(|source| source.name == stem) {
             Some(source) => {
                 let (count, every) = (source.members.len(), law(&source.every, "s"));
-                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count} at once");
+                writeln!(out, "  source {stem}: one every {every}, at most {count} at once")
             }
-            None => {
-                let _ = writeln!(out, "  {name}");
-            }
-        }
+            None => writeln!(out, "  {name}"),
+        };
         agent(out, scenario, first);
         behaviours::describe(out, world, AgentId((scenario.agents.len() - rest.len()) as u32));
         rest = &rest[count..];
     }
     for group in &scenario.groups {
-        let _ = writeln!(
-            out,
-            "  group {}: {} members, attraction {} N",
-            group.name,
-            group.members.len(),
-            number(group.attraction)
-        );
+        let (name, members, attraction) = (&group.name, group.members.len(), number(group.attraction));
+        let _ = writeln!(out, "  group {name}: {members} members, attraction {attraction} N");
     }
     for moves in &scenario.moves {
         let told = |(label, option): &(String, Move)| match option {
-            Move::Route(number) => moves
-                .routes
-                .get(*number)
-                .map_or_else(String::new, |route| format!("{label} ({})", way(scenario, route))),
+            Move::Route(number) => {
+                let route = moves.routes.get(*number);
+                route.map_or_else(String::new, |route| format!("{label} ({})", way(scenario, route)))
+            }
             Move::Heading(_) | Move::Stop | Move::Own | Move::Path(_) => label.clone(),
         };
+        let name = &scenario.agents[moves.agent.0 as usize].name;
         if moves.paths.is_some() {
-            let name = &scenario.agents[moves.agent.0 as usize].name;
             let _ = writeln!(out, "\nPaths of {name}: at most {} on its roadmap", moves.options.len());
             continue;
         }
         let labels: Vec<String> = moves.options.iter().map(told).collect();
-        let _ = writeln!(
-            out,
-            "\nMoves of {} for {} s: {}",
-            scenario.agents[moves.agent.0 as usize].name,
-            number(scenario.clock.seconds(moves.duration)),
-            labels.join(", ")
-        );
+        let seconds = number(scenario.clock.seconds(moves.duration));
+        let _ = writeln!(out, "\nMoves of {name} for {seconds} s: {}", labels.join(", "));
     }
 }
 
@@ -238,14 +211,12 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
         let _ = writeln!(out, "      gait {gait}; search {search}");
     }
     if let Some(p) = agent.particle {
+        let (persons, radius) =
+            (counted(p.persons.into(), "person"), width(&p, agent.body[Parameter::Radius].bounds().1));
+        let [tau, repulsion, friction] = [p.tau_factor, p.repulsion, p.friction].map(number);
         let _ = writeln!(
             out,
-            "      one body for {}: radius {}, tau times {}, repulsion times {}, friction {} kg/(m s)",
-            counted(u64::from(p.persons), "person"),
-            width(&p, agent.body[Parameter::Radius].bounds().1),
-            number(p.tau_factor),
-            number(p.repulsion),
-            number(p.friction)
+            "      one body for {persons}: radius {radius}, tau times {tau}, repulsion times {repulsion}, friction {friction} kg/(m s)"
         );
     }
     let place = match &agent.start.position {
@@ -342,23 +313,17 @@ fn shape(shape: &Shape) -> String {
         Shape::Circle { centre, radius } => format!("circle {} radius {} m", point(*centre), number(*radius)),
         Shape::Polygon(polygon) => {
             let corners = polygon.outline.len();
-            let holes = if polygon.holes.is_empty() {
-                String::new()
-            } else {
-                format!(", {}", counted(polygon.holes.len() as u64, "hole"))
+            let holes = match polygon.holes.len() as u64 {
+                0 => String::new(),
+                several => format!(", {}", counted(several, "hole")),
             };
             let bounds = shape.bounds();
             let (width, height) = (bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y);
+            let (low, high, area) = (point(bounds.low), point(bounds.high), number(polygon.area()));
             if corners == 4 && holes.is_empty() && polygon.area() == width * height {
-                let area = number(polygon.area());
-                return format!("rect {} .. {}, {area} m^2", point(bounds.low), point(bounds.high));
+                return format!("rect {low} .. {high}, {area} m^2");
             }
-            format!(
-                "{corners} corners{holes}, {} .. {}, {} m^2",
-                point(bounds.low),
-                point(bounds.high),
-                number(polygon.area())
-            )
+            format!("{corners} corners{holes}, {low} .. {high}, {area} m^2")
         }
     }
 }

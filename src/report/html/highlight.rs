@@ -15,7 +15,7 @@ pub(super) fn highlighted(text: &str, most: usize, (links, number): (&Links, usi
     let mut html = String::with_capacity(2 * shown.len());
     let (mut line, mut is_first) = (1, true);
     for (word, class) in tokens(shown) {
-        let is_word = class.is_none_or(|class| class == "keyword") && word.starts_with(begins_word);
+        let is_word = is_word(&(word, class));
         let link = if is_word { links.start(word, (number, line), is_first) } else { None };
         let end = if link.is_some() { "</a>" } else { "" };
         let link = link.unwrap_or_default();
@@ -49,10 +49,12 @@ fn tokens(text: &str) -> impl Iterator<Item = (&str, Option<&'static str>)> {
 
 /// The names and keywords of a text.
 pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
-    let is_word = |(word, class): &(&str, Option<&str>)| {
-        class.is_none_or(|class| class == "keyword") && word.starts_with(begins_word)
-    };
     tokens(text).filter(is_word).map(|(word, _)| word)
+}
+
+/// Whether a token is a name or a keyword.
+fn is_word((word, class): &(&str, Option<&str>)) -> bool {
+    class.is_none_or(|class| class == "keyword") && word.starts_with(begins_word)
 }
 
 fn begins_word(first: char) -> bool {

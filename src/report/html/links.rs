@@ -38,9 +38,7 @@ impl Links {
             let lines = scene.lines.iter().map(|line| line.name.as_str());
             let points = scene.points.iter().map(|(name, _)| name.as_str());
             for name in agents.chain(regions).chain(lines).chain(points) {
-                if !links.names.contains_key(name) {
-                    links.names.insert(name.to_owned(), PLAYER.to_owned());
-                }
+                links.names.insert(name.to_owned(), PLAYER.to_owned());
             }
         }
         let mut declared = BTreeSet::new();

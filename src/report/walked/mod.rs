@@ -4,11 +4,12 @@ use crate::base::geometry::Vec2;
 use crate::data::table::{CSV, Column, Kind, Table, Value, write};
 use crate::gait::Foot;
 use crate::model::Scenario;
+use crate::report::json::joined;
 use crate::report::number::count;
 use crate::report::svg::picture::Picture;
 use crate::report::svg::{Drawing, Ink, plan};
 use crate::stats::twosample::Summary;
-use serde_json::{Map, json};
+use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io;
@@ -82,25 +83,22 @@ impl WalkedLeg {
     }
 
     /// The row of a table, with the names of its columns; null where there is no number.
-    fn row(&self, trials: u64) -> Map<String, serde_json::Value> {
-        let [from, to] = &self.ends;
+    fn row(&self, trials: u64) -> serde_json::Value {
         let count = self.walks.len() as u64;
-        let names = ["agent", "leg", "from", "to", "walks", "unfinished"];
-        let known = [
-            json!(self.agent),
-            json!(self.number),
-            json!(from),
-            json!(to),
-            json!(count),
-            json!(trials - count),
-        ];
-        let mut row: Map<_, _> = names.map(str::to_owned).into_iter().zip(known).collect();
-        for (name, numbers) in ["length_m", "time_s", "steps"].into_iter().zip(self.numbers()) {
-            for (what, number) in ["median", "q1", "q3", "iqr"].into_iter().zip(numbers) {
-                row.insert(format!("{name}_{what}"), json!(number));
-            }
-        }
-        row
+        let known = json!({
+            "agent": self.agent,
+            "leg": self.number,
+            "from": self.ends[0],
+            "to": self.ends[1],
+            "walks": count,
+            "unfinished": trials - count,
+        });
+        let numbers = |(name, [median, q1, q3, iqr]): (&str, [f64; 4])| {
+            let named = [("median", median), ("q1", q1), ("q3", q3), ("iqr", iqr)];
+            named.map(|(what, number)| (format!("{name}_{what}"), json!(number)))
+        };
+        let measures = ["length_m", "time_s", "steps"].into_iter().zip(self.numbers()).flat_map(numbers);
+        joined([known, serde_json::Value::Object(measures.collect())])
     }
 }
 
@@ -166,12 +164,11 @@ pub fn write_csv(out: impl io::Write, walked: &Walked) -> io::Result<()> {
         serde_json::Value::String(text) => text,
         number => number.to_string(),
     };
-    let rows: Vec<Map<String, serde_json::Value>> =
-        walked.legs.iter().map(|leg| leg.row(walked.trials)).collect();
-    if let Some(first) = rows.first() {
-        table.write_record(first.keys())?;
-    }
-    for row in rows {
+    for (k, leg) in walked.legs.iter().enumerate() {
+        let serde_json::Value::Object(row) = leg.row(walked.trials) else { continue };
+        if k == 0 {
+            table.write_record(row.keys())?;
+        }
         table.write_record(row.into_iter().map(|(_, value)| cell(value)))?;
     }
     table.flush()

@@ -208,20 +208,16 @@ fn drawn(
     for k in 0..=SHADES {
         let x = f64::from(k as u32) * plan.shade();
         if k < SHADES {
+            let (shade, wide) = (k + 1, plan.shade());
             let _ = write!(
                 legend,
-                "<rect class=\"h{}\" x=\"{x:.1}\" y=\"0\" width=\"{:.1}\" height=\"10\"/>",
-                k + 1,
-                plan.shade()
+                "<rect class=\"h{shade}\" x=\"{x:.1}\" y=\"0\" width=\"{wide:.1}\" height=\"10\"/>"
             );
         }
         // Long numbers would touch.
         if plan.is_wide() || k % 2 == 0 {
-            let _ = write!(
-                legend,
-                "<text class=\"tick\" x=\"{x:.1}\" y=\"22\">{}</text>",
-                plain((width * k as f64 * 1e9).round() / 1e9)
-            );
+            let number = plain((width * k as f64 * 1e9).round() / 1e9);
+            let _ = write!(legend, "<text class=\"tick\" x=\"{x:.1}\" y=\"22\">{number}</text>");
         }
     }
     let above =

@@ -86,12 +86,8 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     } else {
         figures.extend(lines);
     }
-    let seconds = traces.iter().map(|trace| trace.end).sum();
-    let mut note = format!(
-        "From {} of the player, {} in all.",
-        counted(traces.len() as u64, "trace"),
-        duration(seconds)
-    );
+    let seconds = duration(traces.iter().map(|trace| trace.end).sum());
+    let mut note = format!("From {} of the player, {seconds} in all.", counted(traces.len() as u64, "trace"));
     let shown = traces.iter().find_map(|trace| trace.shows.first());
     if shown.is_some() {
         note += " They were kept for what they show, and are no random sample.";
@@ -127,19 +123,15 @@ fn speed_density(moments: &[Moment]) -> Option<Figure> {
     let y = Scale::linear(dots.iter().map(|dot| dot.1).chain([0.0]));
     let mut frame = Frame::new(["density (agents/m²)", "mean speed (m/s)"], x, y);
     frame.cloud(dots, 1);
-    let shown = if every > 1 {
-        format!(" Of {} dots, one in {every} is shown.", count(all.len() as u64))
-    } else {
-        String::new()
+    let shown = match every {
+        1 => String::new(),
+        _ => format!(" Of {} dots, one in {every} is shown.", count(all.len() as u64)),
     };
     let caption = format!(
         "Speed against density. Each dot is one second of a trace: the number of agents over the area of all their \
          Voronoi cells (at most 1 m around each, cut at walls and obstacles), and the mean speed of the agents over \
          that second, along straight lines.{shown}"
     );
-    Some(Figure {
-        caption,
-        svg: Picture::charts("Speed against density", vec![frame]).part_of_page(),
-        is_wide: true,
-    })
+    let svg = Picture::charts("Speed against density", vec![frame]).part_of_page();
+    Some(Figure { caption, svg, is_wide: true })
 }

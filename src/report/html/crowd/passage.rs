@@ -72,18 +72,14 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
         caption += &format!(", on {} m: {}.", plain(thousandths(width)), spread(&wide, " 1/(m s)"));
     }
     if traces.len() > 1 {
-        caption += &format!(
-            " Line: mean, band: range of {}; a trace that was stopped keeps its last number.",
-            counted(traces.len() as u64, "trace")
-        );
+        let all = counted(traces.len() as u64, "trace");
+        caption +=
+            &format!(" Line: mean, band: range of {all}; a trace that was stopped keeps its last number.");
     }
     let end = traces.iter().map(|trace| trace.end).fold(0.0, f64::max);
     let most = all.iter().copied().fold(1.0, f64::max);
-    let mut frame = Frame::new(
-        ["time (s)", "agents that have crossed"],
-        Scale::linear([0.0, end]),
-        Scale::linear([0.0, most]),
-    );
+    let (x, y) = (Scale::linear([0.0, end]), Scale::linear([0.0, most]));
+    let mut frame = Frame::new(["time (s)", "agents that have crossed"], x, y);
     let mut means = Vec::new();
     let mut ends = Vec::new();
     for k in 0..=POINTS {
@@ -98,9 +94,6 @@ pub(super) fn figure(line: &Line, traces: &[&Trace]) -> Figure {
         frame.band(&ends, 1);
     }
     frame.line(means, 3);
-    Figure {
-        svg: Picture::charts(&format!("N(t) through {name}"), vec![frame]).part_of_page(),
-        caption,
-        is_wide: true,
-    }
+    let svg = Picture::charts(&format!("N(t) through {name}"), vec![frame]).part_of_page();
+    Figure { caption, svg, is_wide: true }
 }

@@ -56,8 +56,7 @@ impl Plan {
 
     /// Whether it takes all the width of a page.
     pub(super) fn is_wide(&self) -> bool {
-        let size = self.bounds.high - self.bounds.low;
-        size.x > LARGE
+        self.bounds.high.x - self.bounds.low.x > LARGE
     }
 
     /// Width of a shade in the legend.
@@ -71,11 +70,8 @@ impl Plan {
     }
 
     fn path(&self, points: &[Vec2]) -> String {
-        points
-            .iter()
-            .enumerate()
-            .map(|(k, p)| format!("{}{}", if k == 0 { "M" } else { "L" }, self.at(*p)))
-            .collect()
+        let part = |(k, p): (usize, &Vec2)| format!("{}{}", if k == 0 { "M" } else { "L" }, self.at(*p));
+        points.iter().enumerate().map(part).collect()
     }
 
     fn drawn(&self, scene: &Scene) -> String {

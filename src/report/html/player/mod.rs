@@ -26,10 +26,8 @@ impl Player {
     /// The player of some traces; `None` without any.
     pub(super) fn of(run: &CallResult, traces: Traces) -> Option<Self> {
         let Traces { mut list, mut left_out } = traces;
-        let mut numbers = 0;
-        for trace in &list {
-            numbers = numbers.max(trace.scenario.agents.len()).max(trace.motion.tracks.len());
-        }
+        let numbers = list.iter().map(|one| one.scenario.agents.len().max(one.motion.tracks.len()));
+        let numbers = numbers.max().unwrap_or(0);
         let thinned = thin(&mut list, MOST_BYTES, |list| json(&Data::of(run, list)).len());
         if list.is_empty() {
             return None;
@@ -44,19 +42,15 @@ impl Player {
             [] => "The truth of the atoms is shown at each change.".to_owned(),
             _ if list.iter().all(|trace| trace.motion.tracks.is_empty()) => "No agent is present.".to_owned(),
             [one] => format!("States every {} {unit}, positions to 1 mm.", plain(*one)),
-            [first, .., last] => format!(
-                "States every {} {unit} to every {} {unit}, positions to 1 mm.",
-                plain(*first),
-                plain(*last)
-            ),
+            [first, .., last] => {
+                let [first, last] = [*first, *last].map(plain);
+                format!("States every {first} {unit} to every {last} {unit}, positions to 1 mm.")
+            }
         };
         let mut note = each;
         if thinned.every > 0 {
-            note += &format!(
-                " Of up to {}, one in {} is shown, with those that decided.",
-                counted(numbers as u64, "agent"),
-                thinned.every
-            );
+            let (all, every) = (counted(numbers as u64, "agent"), thinned.every);
+            note += &format!(" Of up to {all}, one in {every} is shown, with those that decided.");
         }
         if left_out > 0 {
             note += &format!(" Left out: {}; a page holds 2 MB.", counted(left_out as u64, "trace"));
