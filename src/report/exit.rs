@@ -5,40 +5,34 @@ use crate::engine::outcome::{CallResult, Failure, Verdict};
 /// The exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitCode {
-    /// 0: every `check` is satisfied, everything was computed.
-    Success,
-    /// 4: a query other than a `check` was not begun or is incomplete, for lack of time or trials.
-    Incomplete,
-    /// 3: a `check` is undecided within the budget, and none is violated.
-    Undecided,
-    /// 1: a `check` is violated.
-    Violated,
-    /// 130: interrupted; what is known so far was printed.
-    Interrupted,
-    /// 2: the call, an input or the model is wrong.
-    Wrong,
-    /// 70: a bug in `smc`.
-    Bug,
+    /// Every `check` is satisfied, everything was computed.
+    Success = 0,
+    /// A query other than a `check` was not begun or is incomplete, for lack of time or trials.
+    Incomplete = 4,
+    /// A `check` is undecided within the budget, and none is violated.
+    Undecided = 3,
+    /// A `check` is violated.
+    Violated = 1,
+    /// Interrupted; what is known so far was printed.
+    Interrupted = 130,
+    /// The call, an input or the model is wrong.
+    Wrong = 2,
+    /// A bug in `smc`.
+    Bug = 70,
 }
 
 impl ExitCode {
     /// The number.
     pub const fn code(self) -> u8 {
-        match self {
-            Self::Success => 0,
-            Self::Incomplete => 4,
-            Self::Undecided => 3,
-            Self::Violated => 1,
-            Self::Interrupted => 130,
-            Self::Wrong => 2,
-            Self::Bug => 70,
-        }
+        self as u8
     }
 
     /// The one of two that counts: 70 > 2 > 130 > 1 > 3 > 4 > 0.
     #[must_use]
-    pub const fn worse(self, other: Self) -> Self {
-        if self as u8 >= other as u8 { self } else { other }
+    pub fn worse(self, other: Self) -> Self {
+        use ExitCode::{Bug, Incomplete, Interrupted, Success, Undecided, Violated, Wrong};
+        let order = [Bug, Wrong, Interrupted, Violated, Undecided, Incomplete];
+        order.into_iter().find(|one| [self, other].contains(one)).unwrap_or(Success)
     }
 }
 
