@@ -14,7 +14,7 @@ use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{Budget, Call, CallForecast, CommandLine, Fault, forecast, run as run_study};
+use crate::engine::{Budget, Call, CallForecast, CommandLine, forecast, run as run_study};
 use crate::model::Scenario;
 use crate::report::html::Page;
 use crate::report::{ExitCode as Exit, Format, Palette};
@@ -106,7 +106,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         deadline.enter(Phase::Sampling);
         return match forecast(study, &call(), &executor, &budget) {
             Ok(total) => reporter.tell(&total),
-            Err(fault) => reporter.fault(&fault),
+            Err(fault) => reporter.refuse_for(&library::refusals(&fault)),
         };
     }
     let progress = Progress::new(arguments.quiet, deadline);
@@ -195,10 +195,8 @@ impl Reporter<'_> {
             Format::Json => report::forecast::json(total),
             Format::Text | Format::Verbose => visible(&report::forecast::text(total)).into_owned(),
             _ => {
-                return self.refuse(complaint::argument(
-                    "`--forecast` supports only `--format text` and `--format json`",
-                    "write `--format text` or `--format json`",
-                ));
+                let title = "`--forecast` supports only `--format text` and `--format json`";
+                return self.refuse(complaint::argument(title, "write `--format text` or `--format json`"));
             }
         };
         match print(&text) {
@@ -239,11 +237,6 @@ impl Reporter<'_> {
             more => format!("{first} (and {more} more errors)"),
         };
         self.hand_out(reason)
-    }
-
-    /// Nothing could be run.
-    fn fault(self, fault: &Fault) -> Exit {
-        self.refuse_for(&library::refusals(fault))
     }
 
     /// A report of a run that never began, in formats for machines; people have read it already.
@@ -405,8 +398,7 @@ impl Outputs {
                 "write one of them into a file: `--format json=results.json`",
             ));
         }
-        let files = chosen.iter().filter_map(|one| Some((one.format, one.file.clone()?)));
-        let files: Vec<_> = files.collect();
+        let files: Vec<_> = chosen.iter().filter_map(|one| Some((one.format, one.file.clone()?))).collect();
         let names: Vec<Option<&Path>> =
             files.iter().map(|(_, file)| Some(file.as_path())).chain([page]).collect();
         output::guard_all(&names, inputs)?;

@@ -73,13 +73,10 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
         if cusum.observe(success) {
             alarms.push(cusum.read());
             // At once: whoever listens may want to act. Where nobody does, nothing more is read.
+            let (read, line) = (cusum.read(), outcomes.lines());
             let heard = print_to_reader(&match arguments.format {
-                TextFormat::Text => {
-                    format!("alarm after outcome {} (line {})\n", cusum.read(), outcomes.lines())
-                }
-                TextFormat::Json => {
-                    format!("{}\n", json!({ "alarm": cusum.read(), "line": outcomes.lines() }))
-                }
+                TextFormat::Text => format!("alarm after outcome {read} (line {line})\n"),
+                TextFormat::Json => format!("{}\n", json!({ "alarm": read, "line": line })),
             })?;
             if arguments.first || !heard {
                 break;

@@ -56,9 +56,7 @@ fn advise(arguments: &AdviseCommand, parsed: &Parsed, colors: Colors) -> Result<
         return Ok(complaint::end(done.map(|()| Exit::Success), &parsed.inputs.sources, colors));
     }
     let user = if let Some(Whose::Person(id)) = arguments.user { Some(id) } else { None };
-    let options =
-        Advising { seed: arguments.seed, user, range: arguments.range, only: arguments.only.clone() };
-    let adviser = Adviser::new(parsed.input(), role, options);
+    let adviser = Adviser::new(parsed.input(), role, arguments.options(user));
     let mut caller =
         Caller { arguments, adviser, threads: &threads, late: Default::default(), shown: Advised::default() };
     let done = match recording {
@@ -197,6 +195,11 @@ impl AdviseCommand {
     /// First and last time of a replay, s.
     fn span(&self) -> (f64, f64) {
         (self.from.unwrap_or(f64::NEG_INFINITY), self.to.unwrap_or(f64::INFINITY))
+    }
+
+    /// How somebody is advised.
+    fn options(&self, user: Option<u32>) -> Advising {
+        Advising { seed: self.seed, user, range: self.range, only: self.only.clone() }
     }
 
     /// Which velocities are used.

@@ -2,7 +2,7 @@
 
 use super::replay::{Followed, places, run};
 use super::{AdviseCommand, Caller};
-use crate::advise::{Adviser, Advising, role};
+use crate::advise::{Adviser, role};
 use crate::base::visible::visible;
 use crate::cli::complaint;
 use crate::cli::terminal::print;
@@ -38,13 +38,7 @@ pub(super) fn everybody(
         }
         let begin = batches.partition_point(|batch| batch.time < first.0 - BEFORE);
         let end = batches.partition_point(|batch| batch.time <= last.0);
-        let options = Advising {
-            seed: arguments.seed,
-            user: Some(id),
-            range: arguments.range,
-            only: arguments.only.clone(),
-        };
-        let adviser = Adviser::new(parsed.input(), role(&parsed.scenario)?, options);
+        let adviser = Adviser::new(parsed.input(), role(&parsed.scenario)?, arguments.options(Some(id)));
         let (late, shown) = (Default::default(), Advised::default());
         let mut caller = Caller { arguments, adviser, threads, late, shown };
         let Followed { walked: [advised, recorded], cycles } =

@@ -67,14 +67,7 @@ fn in_scene(
     (scenario, kind): (&str, &str),
     colors: Colors,
 ) -> Result<ChosenMotion, Vec<Diagnostic>> {
-    let model = Model {
-        scenario: scenario.to_owned(),
-        set: Vec::new(),
-        data: arguments.data.clone(),
-        models: Vec::new(),
-        calibration: None,
-        velocity: None,
-    };
+    let model = Model { scenario: scenario.to_owned(), data: arguments.data.clone(), ..Model::default() };
     let (study, inputs::Loaded { inputs, paths }) =
         inputs::load_or_tell(&model, &[], colors).ok_or_else(Vec::new)?;
     let world = study.worlds.get(study.base).ok_or_else(Vec::new)?;

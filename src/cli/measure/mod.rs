@@ -60,18 +60,12 @@ fn answer(
         }
         (other, output) => {
             let (format, wanted) = (format(other)?, table(file, &measured));
+            let fill = |out: &mut dyn Write| table::write(format, out, &wanted, rows(&measured)).map(drop);
             match output {
-                Some(path) => {
-                    let fill = |out: &mut dyn Write| table::write(format, out, &wanted, rows(&measured));
-                    output::write(path, fill).map_err(|error| {
-                        complaint::input(format!("cannot write `{}`: {error}", path.display()))
-                    })?;
-                }
-                None => {
-                    let fill =
-                        |out: &mut Vec<u8>| table::write(format, out, &wanted, rows(&measured)).map(|_| ());
-                    output::put(None, &output::table(fill)?)?;
-                }
+                Some(path) => output::write(path, fill).map_err(|error| {
+                    complaint::input(format!("cannot write `{}`: {error}", path.display()))
+                })?,
+                None => output::put(None, &output::table(|out| fill(out))?)?,
             }
         }
     }
@@ -105,9 +99,7 @@ fn ground(arguments: &MeasureCommand, colors: Colors) -> Result<(Ground, Vec<Pat
         scenario: scenario.clone(),
         set: arguments.set.clone(),
         data: arguments.data.clone(),
-        models: Vec::new(),
-        calibration: None,
-        velocity: None,
+        ..Model::default()
     };
     let (parsed, paths) = inputs::parse_or_tell(&model, &[], colors).ok_or_else(Vec::new)?;
     let ground = Ground {

@@ -58,9 +58,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         scenario: scenario.to_owned(),
         set: arguments.set.clone(),
         data: arguments.data.clone(),
-        models: Vec::new(),
-        calibration: None,
-        velocity: None,
+        ..Model::default()
     };
     let nothing = Vec::new;
     let (study, inputs::Loaded { inputs, paths }) =

@@ -41,7 +41,8 @@ pub(in crate::cli) fn run(arguments: &CalibrateCommand, colors: Colors) -> Exit 
     };
     let work = |call: &Call, calibrating: &Calibrating| measured(arguments, call, calibrating);
     let outputs = [arguments.span.output.as_deref(), arguments.report.as_deref()];
-    super::run_at_site(&replayed, (Velocity::Seen, Whose::Everybody), (outputs, colors), of, work)
+    let whose = (Velocity::Seen, Whose::Everybody);
+    super::run_at_site(&replayed, whose, (outputs, colors), of, Calibrating::site_of, work)
 }
 
 fn measured(

@@ -22,7 +22,6 @@ use crate::compile::Site;
 use crate::data::tracks::Velocity;
 use crate::engine::Threads;
 use crate::library::Parsed;
-use crate::replay::calibrate::Calibrating;
 use crate::replay::{Instant, Replay, Whose};
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
@@ -39,13 +38,14 @@ struct Call {
     every: f64,
 }
 
-/// As `run`, for a call that finds the laws of its site in the recording.
-fn run_at_site(
+/// As `run`, for a call that finds the laws of its site in the recording: `prepare` reads the texts, `site` the recording.
+fn run_at_site<T>(
     replayed: &Replayed,
-    (usual, whose): (Velocity, Whose),
+    of: (Velocity, Whose),
     (outputs, colors): ([Option<&Path>; 2], Colors),
-    of: impl FnOnce(&Parsed) -> Calibrating,
-    work: impl FnOnce(&Call, &Calibrating) -> Result<String, Vec<Diagnostic>>,
+    prepare: impl FnOnce(&Parsed) -> T,
+    site: impl FnOnce(&T, &Replay) -> Result<Option<Site>, Diagnostic>,
+    work: impl FnOnce(&Call, &T) -> Result<String, Vec<Diagnostic>>,
 ) -> Exit {
     let Some((parsed, paths)) = inputs::parse_or_tell(&replayed.model, &replayed.properties, colors) else {
         return Exit::Wrong;
@@ -53,28 +53,22 @@ fn run_at_site(
     if let Err(error) = output::guard_all(&outputs, &paths) {
         return complaint::end(Err(vec![error]), &parsed.inputs.sources, colors);
     }
-    let calibrating = of(&parsed);
+    let prepared = prepare(&parsed);
     let mut sources = parsed.inputs.sources.clone();
-    let site = |replay: &Replay| calibrating.site_of(replay);
-    let work = |call: &Call| work(call, &calibrating);
-    let done = replay(&parsed, &paths, replayed, (usual, whose), &mut sources, (site, work));
+    let site = |replay: &Replay| site(&prepared, replay);
+    let work = |call: &Call| work(call, &prepared);
+    let done = replay(&parsed, &paths, replayed, of, &mut sources, (site, work));
     complaint::end(done.map(|()| Exit::Success), &sources, colors)
 }
 
 /// Reads what a call names and does the work.
 fn run(
     replayed: &Replayed,
-    (usual, whose): (Velocity, Whose),
+    of: (Velocity, Whose),
     colors: Colors,
     work: impl FnOnce(&Call) -> Result<String, Vec<Diagnostic>>,
 ) -> Exit {
-    let Some((parsed, paths)) = inputs::parse_or_tell(&replayed.model, &replayed.properties, colors) else {
-        return Exit::Wrong;
-    };
-    let mut sources = parsed.inputs.sources.clone();
-    let nothing = |_: &Replay| Ok(None);
-    let done = replay(&parsed, &paths, replayed, (usual, whose), &mut sources, (nothing, work));
-    complaint::end(done.map(|()| Exit::Success), &sources, colors)
+    run_at_site(replayed, of, ([None; 2], colors), |_| (), |(), _| Ok(None), |call, ()| work(call))
 }
 
 /// Does the work and writes what it gives; `sources` are the texts of errors.
