@@ -11,11 +11,14 @@ pub(crate) enum PlanPart {
     Door(Segment),
 }
 
+/// Parts with their names, in the order of the file.
+pub(crate) type NamedParts = Vec<(String, PlanPart)>;
+
 /// A floor plan: `import "mall.geojson" as plan`.
 #[derive(Clone, Debug)]
 pub(crate) struct FloorPlan {
     /// Its name.
     pub(crate) name: String,
-    /// Its parts with their names, in the order of the file; none if that could not be read.
-    pub(crate) parts: Option<Vec<(String, PlanPart)>>,
+    /// Its parts; none if the file could not be read.
+    pub(crate) parts: Option<NamedParts>,
 }

@@ -14,7 +14,7 @@ use crate::compile::nearest::nearest;
 use crate::compile::scene::imports::{fields::Import, walls};
 use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
-use crate::syntax::ast::{Expr, ExprKind, SceneItem};
+use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem};
 use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 
@@ -55,7 +55,7 @@ pub(crate) fn declare_scene<'a>(context: &mut Context<'a>, items: &'a [SceneItem
                 entry::enter(context, name, Meaning::Line(id));
             }
             SceneItem::Import { called: Some(name), .. } => {
-                if nearest(&name.name, std::iter::once(WALKABLE)).is_some() {
+                if is_misspelt(name) {
                     let error = error!(E0101, name.span, "expected `{WALKABLE}`, found `{}`", name.name;
                         hint: "did you mean `{WALKABLE}`?");
                     context.note(error);
@@ -152,7 +152,13 @@ pub(crate) fn settle_scene<'a>(
 /// An import as written.
 fn import_of(item: &SceneItem) -> Option<Import<'_>> {
     let SceneItem::Import { path, walkable, filter, called, fields, .. } = item else { return None };
-    Some(Import { path, walkable: *walkable, filter: filter.as_ref(), called: called.as_ref(), fields })
+    let walkable = *walkable || called.as_ref().is_some_and(is_misspelt);
+    Some(Import { path, walkable, filter: filter.as_ref(), called: called.as_ref(), fields })
+}
+
+/// Whether the name of a floor plan was meant to be `walkable`.
+fn is_misspelt(name: &Ident) -> bool {
+    nearest(&name.name, std::iter::once(WALKABLE)).is_some()
 }
 
 fn wall(context: &mut Context<'_>, points: &[Expr], span: Span) -> Lowered<Vec<Segment>> {

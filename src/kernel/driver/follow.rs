@@ -16,8 +16,8 @@ use crate::kernel::code::lanes::{Truth, Vector, narrow, widen};
 use crate::kernel::plan::{Occasion, Plan, Trajectory};
 use crate::kernel::state::plans::Course;
 use crate::kernel::state::{Slot, State};
-use crate::model::Parameter;
 use crate::model::sight::ROUNDING;
+use crate::model::{Leg, Parameter};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 /// A driver is asked again, and a point looked for, at most once in this time, s.
@@ -267,8 +267,9 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
 
 /// Whether someone on the way to one of several exits looks for the quickest again, every 2 s.
 fn chooses_again(drive: &Drive, state: &mut State, slot: Slot) -> bool {
-    let stage = state.route.way(slot.block, slot.lane).stage;
-    if !drive.stages[stage as usize].chooses {
+    let stage = &drive.stages[state.route.way(slot.block, slot.lane).stage as usize];
+    let leg = drive.routes[stage.route as usize].legs().get(stage.at);
+    if !matches!(leg, Some(Leg::To(goal)) if drive.scenario.scene.chooses(goal)) {
         return false;
     }
     let held = state.plans.held_mut(slot);

@@ -66,8 +66,6 @@ pub(super) struct Stage {
     pub(super) leaves: bool,
     /// Whether the goal that follows is in sight from the middle of this one: then it must be in sight for who goes on.
     pub(super) open: bool,
-    /// Whether its goal is the quickest of several exits, so that it is chosen anew at times.
-    pub(super) chooses: bool,
     /// Pauses after the last goal of somebody who stays there.
     pub(super) rests: Vec<Law>,
 }
@@ -118,7 +116,6 @@ fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Sta
         last,
         leaves,
         open: false,
-        chooses: false,
         rests: Vec::new(),
     };
     let (legs, leaves) = match route {
@@ -139,9 +136,7 @@ fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Sta
         .enumerate()
         .map(|(k, leg)| {
             let last = k + 1 == used.len();
-            let leg_number = from.wrapping_add(k as u32);
-            let stage = stage(target(scenario, leg), (number, k), leg_number, (last, last && leaves));
-            Stage { chooses: matches!(leg, Leg::To(goal) if scenario.scene.chooses(goal)), ..stage }
+            stage(target(scenario, leg), (number, k), from.wrapping_add(k as u32), (last, last && leaves))
         })
         .collect();
     if let Some(last) = stages.last_mut() {

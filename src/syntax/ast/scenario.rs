@@ -465,7 +465,7 @@ impl ShapeExpr {
             Self::Circle { span, .. } | Self::Rectangle { span, .. } | Self::Polygon { span, .. } => *span,
             Self::Parts(parts) => {
                 let spans = parts.iter().map(Self::span);
-                spans.reduce(|all, span| all.to(span)).unwrap_or_default()
+                spans.reduce(Span::to).unwrap_or_default()
             }
         }
     }

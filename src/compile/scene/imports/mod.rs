@@ -6,7 +6,7 @@ pub(crate) mod filter;
 
 use crate::compile::context::{
     Context, Lowered,
-    plans::{FloorPlan, PlanPart},
+    plans::{FloorPlan, NamedParts, PlanPart},
 };
 use crate::compile::files::Files;
 use crate::compile::scene::imports::{
@@ -92,7 +92,7 @@ fn plan_of<'c>(context: &'c mut Context<'_>, import: &Import<'_>) -> Option<&'c 
 }
 
 /// The parts of a floor plan that have an area and a name.
-fn rooms(features: &[Feature]) -> Vec<(String, PlanPart)> {
+fn rooms(features: &[Feature]) -> NamedParts {
     let named = features.iter().flat_map(|feature| {
         let shape = match &feature.shape {
             Geometry::Polygon(polygon) => Some(Shape::Polygon(polygon.clone())),
@@ -113,7 +113,7 @@ fn read_import(
     import: &Import<'_>,
     files: &Files,
     middle_of_first: &mut Option<Vec2>,
-) -> Lowered<(Vec<Door>, Vec<(String, PlanPart)>)> {
+) -> Lowered<(Vec<Door>, NamedParts)> {
     let span = import.path.span;
     let format = Format::of(&import.path.value);
     let fields = fields::import_fields(context, import)?;
