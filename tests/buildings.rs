@@ -1,6 +1,7 @@
 //! Exits, doors, rooms of floor plans and premovement: one test for each row of the table on buildings in
 //! `docs/semantics.md`.
 
+use crate::program::Place;
 use smc::base::geometry::{Segment, Vec2};
 use smc::engine::outcome::QueryResult;
 use smc::model::{Obstacle, Scene};
@@ -405,4 +406,37 @@ fn names_that_a_plan_lacks_or_has_twice_are_told_where_they_are_used() {
     assert!(told("plan", &PLAN).contains("`plan` is a floor plan"));
     let nameless = [(r#""indoor":"room""#, "Polygon", PLAN[0].2)];
     assert!(told("plan.Foyer", &nameless).contains("the file names none"));
+}
+
+// ---- the page
+
+#[test]
+fn a_page_of_an_evacuation_has_its_premises() {
+    let text = hall(
+        "kind slow: person { premovement = lognormal(2 s, 1 s) }
+        agents staff[60]: slow { at = uniform in rect (17, 3) .. (19.8, 7); route = nearest(west, east) then leave }
+        agent guard: person { at = (2, 2) }",
+    );
+    let text = text.replace("region out", "door east_door: (20, 4) -- (20, 6)\n region out");
+    let page = |text: &str, query: &str| {
+        let place = Place::new(&[("a.scn", text), ("a.bltl", query)]);
+        let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--report", "a.html"]);
+        std::fs::read_to_string(place.path("a.html")).unwrap_or_else(|_| panic!("{}", said.err))
+    };
+    let query = "estimate Q(0.95, time_until(count(a in staff: present(a)) == 0)) by fixed(trials = 72)";
+    let page_of_exits = page(&text, query);
+    let has = |part: &str| assert!(page_of_exits.contains(part), "{part} is not on the page");
+    has("<h2>Premises</h2>");
+    has("<td>building</td><td>56 m of walls, 0 obstacles</td>");
+    has("<td>door or line east_door</td><td>2 m wide</td>");
+    has("<td>occupants</td><td>61 persons</td>");
+    has("<td>staff: 60 persons</td><td>premovement lognormal(2 s, 1 s), speed normal(");
+    has("goes nearest(west, east), then leaves</td>");
+    has("72 trials, as planned");
+    has("above 4 per m² around (m)");
+    has("@page { size: A4");
+    // Nobody leaves a scene without an exit.
+    let still = hall("agents all[3]: person { at = uniform in rect (1, 1) .. (9, 9); route = out }");
+    let query = "estimate P(F<=9 s (exists a in all: a in out)) by fixed(trials = 4)";
+    assert!(!page(&still, query).contains("<h2>Premises</h2>"));
 }

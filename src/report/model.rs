@@ -113,25 +113,25 @@ fn scene(scenario: &Scenario) -> String {
     out
 }
 
+/// The members of one declaration that differ only in their number, together.
+pub(super) fn declared(agents: &[Agent]) -> impl Iterator<Item = &[Agent]> {
+    fn stem(agent: &Agent) -> Option<&str> {
+        agent.name.split('[').next()
+    }
+    agents.chunk_by(|a, b| stem(a) == stem(b) && a.body == b.body && a.start == b.start && a.route == b.route)
+}
+
 fn people(out: &mut String, world: &World) {
     let scenario = &*world.scenario;
     let coming: usize = scenario.sources.iter().map(|source| source.members.len()).sum();
     let _ = writeln!(out, "\nAgents: {}", scenario.agents.len() - coming);
-    let mut rest = scenario.agents.as_slice();
-    while let Some(first) = rest.first() {
-        // Members of one declaration that differ only in their number are shown once.
-        let stem = first.name.split('[').next().unwrap_or("").to_owned();
-        let alike = |a: &Agent| {
-            a.name.split('[').next() == Some(stem.as_str())
-                && a.body == first.body
-                && a.start == first.start
-                && a.route == first.route
-        };
-        let count = rest.iter().take_while(|a| alike(a)).count().max(1);
-        let name = if count > 1 {
-            format!("{} to {}", first.name, rest[count - 1].name)
-        } else {
-            first.name.clone()
+    let mut number_of_first = 0;
+    for members in declared(&scenario.agents) {
+        let (first, last) = (&members[0], &members[members.len() - 1]);
+        let stem = first.name.split('[').next().unwrap_or("");
+        let name = match members {
+            [one] => one.name.clone(),
+            _ => format!("{} to {}", first.name, last.name),
         };
         let _ = match scenario.sources.iter().find(|source| source.name == stem) {
             Some(source) => {
@@ -141,8 +141,8 @@ fn people(out: &mut String, world: &World) {
             None => writeln!(out, "  {name}"),
         };
         agent(out, scenario, first);
-        behaviours::describe(out, world, AgentId((scenario.agents.len() - rest.len()) as u32));
-        rest = &rest[count..];
+        behaviours::describe(out, world, AgentId(number_of_first));
+        number_of_first += members.len() as u32;
     }
     for group in &scenario.groups {
         let (name, members, attraction) = (&group.name, group.members.len(), number(group.attraction));

@@ -5,6 +5,7 @@ mod crowd;
 mod highlight;
 mod links;
 mod player;
+mod premises;
 mod section;
 
 use super::number::{counted, duration};
@@ -85,6 +86,8 @@ struct Html<'r> {
 /// A page.
 pub fn page(page: Page<'_>) -> String {
     let Page { run, sources, mut tables, traces, without_crowd } = page;
+    let premises = traces.list.first().and_then(|trace| premises::table(&trace.scenario, &run));
+    tables.splice(0..0, premises);
     for table in &mut tables {
         let more = table.rows.len().saturating_sub(MOST_ROWS) as u64;
         if more > 0 {

@@ -1,6 +1,7 @@
 //! Crowds on a page, from the traces that are kept for its player: heat maps, exits, N(t) through lines, speed against
 //! density. All are drawn when the page is made.
 
+mod dense;
 mod exits;
 mod heat;
 mod moments;
@@ -38,6 +39,8 @@ pub(super) struct Crowd {
     pub(super) note: String,
     /// A row for each exit by which people left.
     pub(super) exits: Vec<Vec<String>>,
+    /// A row for each place at which people stood close.
+    pub(super) dense: Vec<Vec<String>>,
     pub(super) figures: Vec<Figure>,
 }
 
@@ -76,13 +79,14 @@ fn is_crowd(traces: &[&Trace]) -> bool {
 fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     let scene = &traces[0].scenario.scene;
     let plan = Plan::of(scene, traces)?;
-    let mut figures = Vec::new();
+    let (mut figures, mut dense) = (Vec::new(), Vec::new());
     let lines = scene.lines.iter().take(MOST_LINES).map(|line| passage::figure(line, traces));
     if is_crowd(traces) {
         let moments = moments::moments(&Voronoi::new(scene), traces.iter().map(|trace| &trace.motion));
         figures.extend(heat::figures(&plan, traces, &moments));
         figures.extend(lines);
         figures.extend(speed_density(&moments));
+        dense = dense::rows(&moments, traces.len());
     } else {
         figures.extend(lines);
     }
@@ -98,7 +102,10 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     }
     let result = shown.and_then(|shown| run.results.get(shown.result));
     let exits = if is_crowd(traces) { exits::rows(traces) } else { Vec::new() };
-    Some(Crowd { head: result.map_or(String::new(), settings), note, exits, figures })
+    if is_crowd(traces) && dense.is_empty() {
+        note += &format!(" Nowhere did two or more people stand closer than {} per m².", dense::CLOSE);
+    }
+    Some(Crowd { head: result.map_or(String::new(), settings), note, exits, dense, figures })
 }
 
 // Speed against density: a dot for each second of each trace. The density is that of the area that people occupy: their

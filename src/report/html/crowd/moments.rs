@@ -17,6 +17,8 @@ const SECOND: f64 = 1.0;
 pub(super) struct Moment {
     /// Places, m, and areas of cells, m².
     pub(super) people: Vec<(Vec2, f64)>,
+    /// The time to the next moment, s.
+    pub(super) seconds: f64,
     /// Mean speed, m/s; none where nobody is there a second later.
     pub(super) speed: Option<f64>,
 }
@@ -41,7 +43,9 @@ pub(super) fn moments<'m>(
     let every = cells.div_ceil(MOST_CELLS).max(1);
     let all = motions.flat_map(|motion| {
         let second = frames(motion);
-        (0..motion.frames).step_by(second * every).map(move |frame| moment(voronoi, motion, frame, second))
+        let seconds = (second * every) as f64 * motion.spacing;
+        let moment = move |frame| Moment { seconds, ..moment(voronoi, motion, frame, second) };
+        (0..motion.frames).step_by(second * every).map(moment)
     });
     all.filter(|moment| !moment.people.is_empty()).collect()
 }
@@ -56,6 +60,7 @@ fn moment(voronoi: &Voronoi, motion: &Motion, frame: usize, second: usize) -> Mo
     let areas = voronoi.areas(&places);
     Moment {
         people: places.into_iter().zip(areas).collect(),
+        seconds: 0.0,
         speed: (count > 0).then(|| sum / f64::from(count)),
     }
 }

@@ -1,0 +1,38 @@
+//! Places at which people stood close: squares of 1 m in which the density was above 4 persons per m², which the guidelines of
+//! the IMO (MSC.1/Circ.1533) call congestion, and for how long.
+
+use super::moments::Moment;
+use crate::report::number::brief;
+use std::collections::BTreeMap;
+
+/// Density above which people stand close, 1/m².
+pub(super) const CLOSE: f64 = 4.0;
+/// Rows of the table.
+const MOST_PLACES: usize = 10;
+
+/// A row for each square, the longest first: its middle, m; for how long, s in a trace; the greatest density, 1/m². The density is
+/// the mean of 1 / area of the cells of those in the square, if there are two or more.
+pub(super) fn rows(moments: &[Moment], traces: usize) -> Vec<Vec<String>> {
+    let mut squares: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();
+    for moment in moments {
+        let mut here: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();
+        for (at, area) in moment.people.iter().filter(|(_, area)| *area > 0.0) {
+            let (sum, people) = here.entry((at.x.floor() as i64, at.y.floor() as i64)).or_default();
+            (*sum, *people) = (*sum + 1.0 / area, *people + 1.0);
+        }
+        for (square, (sum, people)) in here {
+            let density = sum / people;
+            if people >= 2.0 && density > CLOSE {
+                let (seconds, most) = squares.entry(square).or_default();
+                (*seconds, *most) = (*seconds + moment.seconds, most.max(density));
+            }
+        }
+    }
+    let mut all: Vec<_> = squares.into_iter().collect();
+    all.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));
+    let row = |((x, y), (seconds, most)): &((i64, i64), (f64, f64))| {
+        let place = format!("({}, {})", *x as f64 + 0.5, *y as f64 + 0.5);
+        vec![place, brief(seconds / traces as f64), brief(*most)]
+    };
+    all.iter().take(MOST_PLACES).map(row).collect()
+}
