@@ -38,6 +38,17 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The regions that a plan shows: those that the scene declares, but for those made of others, which are shown themselves.
+    pub fn shown_regions(&self) -> impl Iterator<Item = &Region> {
+        let is_made_of_others = |region: &Region| match &region.shape {
+            Shape::Parts(parts) => {
+                parts.first().is_some_and(|part| self.regions.iter().any(|r| r.shape == *part))
+            }
+            Shape::Circle { .. } | Shape::Polygon(_) => false,
+        };
+        self.regions.iter().filter(move |region| region.is_declared() && !is_made_of_others(region))
+    }
+
     /// Whether whoever goes to a goal chooses the quickest of several exits.
     pub fn chooses(&self, goal: &Goal) -> bool {
         match goal {
@@ -117,6 +128,12 @@ impl Region {
     /// Of a name, with an extent.
     pub fn new(name: impl Into<String>, shape: Shape) -> Self {
         Self { name: name.into(), shape, exits: Vec::new() }
+    }
+
+    /// Its name on a plan: of a room of a floor plan that in the file.
+    pub fn label(&self) -> &str {
+        let end = self.name.rsplit_once('.').map_or(self.name.as_str(), |(_, end)| end);
+        self.name.split_once("[\"").map_or(end, |(_, quoted)| quoted.trim_end_matches("\"]"))
     }
 
     /// Whether the scene declares it.

@@ -95,7 +95,7 @@ pub fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing
     let all = corners.chain(ends).chain(scene.points.iter().map(|(_, point)| *point)).chain(points);
     let bounds = Bounds::around(all).unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::new(1.0, 1.0) });
     let mut drawing = Drawing::new(bounds);
-    for region in scene.regions.iter().filter(|region| region.is_declared()) {
+    for region in scene.shown_regions() {
         drawing.shape(&region.shape, Ink::REGION);
     }
     for line in &scene.lines {
@@ -168,9 +168,9 @@ fn routes(atlas: &Atlas, scenario: &Scenario) -> Vec<(String, Vec<Vec2>)> {
 
 /// Names of regions, lines and points.
 pub fn name_places(drawing: &mut Drawing, scenario: &Scenario) {
-    for region in scenario.scene.regions.iter().filter(|region| region.is_declared()) {
+    for region in scenario.scene.shown_regions() {
         for part in region.shape.parts() {
-            drawing.text(part.inner_point(), &region.name);
+            drawing.text(part.inner_point(), region.label());
         }
     }
     for line in &scenario.scene.lines {

@@ -70,10 +70,9 @@ pub(super) fn scene(scenario: &Scenario) -> Value {
     let scene = &scenario.scene;
     let wall = |wall: &Segment| [place(wall.a), place(wall.b)].concat();
     let region = |one: &Region| {
-        let part = |part: &Shape| json!({ "name": one.name, "shape": outline(part) });
+        let part = |part: &Shape| json!({ "name": one.label(), "shape": outline(part) });
         one.shape.parts().iter().map(part).collect::<Vec<_>>()
     };
-    let regions = scene.regions.iter().filter(|one| one.is_declared());
     let point = |(name, at): &(String, Vec2)| json!({ "name": name, "at": place(*at) });
     let group = |one: &Group| {
         let members: Vec<u32> = one.members.iter().map(|id| id.0).collect();
@@ -83,7 +82,7 @@ pub(super) fn scene(scenario: &Scenario) -> Value {
         "unit": if scenario.clock == Clock::Steps { "steps" } else { "s" },
         "walls": scene.walls().map(wall).collect::<Vec<_>>(),
         "solids": scene.solids().map(outline).collect::<Vec<_>>(),
-        "regions": regions.flat_map(region).collect::<Vec<_>>(),
+        "regions": scene.shown_regions().flat_map(region).collect::<Vec<_>>(),
         "points": scene.points.iter().map(point).collect::<Vec<_>>(),
         "groups": scenario.groups.iter().map(group).collect::<Vec<_>>(),
         "options": scenario.moves.iter().map(|moves| options(scenario, moves)).collect::<Vec<_>>(),
