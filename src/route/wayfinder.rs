@@ -132,8 +132,7 @@ impl Driver for Wayfinder {
 impl Wayfinder {
     /// The shortest way to a goal, or one that keeps off corners and is hardly longer.
     fn way(&self, situation: &Situation<'_>, goal: &Goal) -> Option<ShortestWay> {
-        let agent = &situation.scenario.agents[situation.agent.0 as usize];
-        let radius = Atlas::class(situation.parameter(Parameter::Radius), is_drawn(agent));
+        let radius = class(situation);
         let way = self.atlas.way(situation.position, goal, radius);
         let aside = situation.parameter(Parameter::Aside);
         let wide = way.as_ref().filter(|way| aside > 0.0 && !way.is_straight).and_then(|way| {
@@ -151,25 +150,32 @@ impl Wayfinder {
         let speed = if speed > SLOWEST { speed } else { SLOWEST };
         let others: Vec<(Vec2, Vec2)> = situation.ends().collect();
         let before = memory.get::<RegionId>().copied();
-        let mut best: Option<(f64, RegionId, ShortestWay)> = None;
+        let mut best: Option<(f64, RegionId)> = None;
         for exit in exits {
             let shape = &situation.scenario.scene.regions[exit.0 as usize].shape;
-            let Some(way) = self.way(situation, &Goal::Region(*exit)) else { continue };
+            let way = self.atlas.way(situation.position, &Goal::Region(*exit), class(situation));
+            let Some(way) = way else { continue };
             let is_ahead = |(at, end): &&(Vec2, Vec2)| shape.contains(*end) && (at - end).norm() < way.length;
             let waiting = others.iter().filter(is_ahead).count() as f64;
             let time = way.length / speed + waiting / (FLOW * width(shape, way.end));
             let time = if before == Some(*exit) { time * (1.0 - GAIN) } else { time };
             if best.as_ref().is_none_or(|best| time < best.0) {
-                best = Some((time, *exit, way));
+                best = Some((time, *exit));
             }
         }
-        let Some((_, exit, way)) = best else { return Plan::NoWay };
+        let Some((_, exit)) = best else { return Plan::NoWay };
         if before == Some(exit) && situation.occasion == Occasion::Looks {
             return Plan::Keep;
         }
         memory.put(exit);
-        Plan::Way(way.points().into())
+        self.way(situation, &Goal::Region(exit)).map_or(Plan::NoWay, |way| Plan::Way(way.points().into()))
     }
+}
+
+/// The radius for which ways of a body are looked up, m.
+fn class(situation: &Situation<'_>) -> f64 {
+    let agent = &situation.scenario.agents[situation.agent.0 as usize];
+    Atlas::class(situation.parameter(Parameter::Radius), is_drawn(agent))
 }
 
 /// The width of an exit where a way ends in it, m: the length of the nearest side, or the diameter.
