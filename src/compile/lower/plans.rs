@@ -23,7 +23,15 @@ pub(crate) fn named(context: &Context<'_>, base: &Expr, locals: &Locals) -> Opti
 /// A part of a floor plan. Only parts that are used become regions and lines of the scene.
 pub(crate) fn part(context: &mut Context<'_>, plan: usize, name: &str, span: Span) -> Lowered<Typed> {
     let Some(plan) = context.plans.get(plan) else { return Err(Reported) };
-    let Some(parts) = &plan.parts else { return Err(Reported) };
+    let Some(parts) = &plan.parts else {
+        // The file could not be read, which was told, or is read later.
+        if context.sink.failed() {
+            return Err(Reported);
+        }
+        let error = error!(E0205, span, "the floor plan `{}` is imported later", plan.name;
+            hint: "import it in the first `scene`");
+        return context.report(error);
+    };
     let mut found = parts.iter().filter(|(known, _)| known == name).map(|(_, part)| part);
     let Some(part) = found.next() else {
         let known = parts.iter().map(|(known, _)| known.as_str());

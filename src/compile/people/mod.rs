@@ -130,6 +130,11 @@ pub(crate) fn members(
                 }
                 (_, route) => route,
             };
+            if k == 0 && body.premovement.is_some() && matches!(route, Route::Onward | Route::OneOf { .. }) {
+                let error = error!(E0408, name.span, "`{}` has a premovement and no route on which to set out", name.name;
+                    hint: "write a `route`, or leave `premovement` out");
+                context.note(error);
+            }
             let chooses = |goal: &Goal| match goal {
                 Goal::Region(id) => {
                     matches!(context.scene.regions[id.0 as usize].shape, Shape::Parts(_))
