@@ -34,6 +34,10 @@ impl Recorded {
     /// The bytes of a file, its format, and how it is read.
     pub(super) fn open(&self, file: &str) -> Result<(Vec<u8>, &'static Format, Reading), Vec<Diagnostic>> {
         let bytes = inputs::read(file).map_err(complaint::input)?;
+        if bytes.trim_ascii().is_empty() {
+            let said = format!("`{}` is empty", inputs::shown(file));
+            return Err(Diagnostic::placeless(Code::E0702, said).into());
+        }
         // A table without a header shows nothing.
         let named = self.columns.as_ref().and_then(|_| Format::from_name("csv"));
         let Some(format) = self.input.or(named).or_else(|| Format::of(&bytes)) else {

@@ -15,6 +15,10 @@ pub(crate) const DISTRIBUTIONS: [&str; 11] = [
     "choice",
 ];
 
+/// Goals that are one of several exits, and the one of them that counts those who wait.
+pub(crate) const CHOICES: [&str; 2] = ["nearest", QUICKEST];
+pub(crate) const QUICKEST: &str = "quickest";
+
 /// Names that stand for something unless they are declared.
 pub(crate) const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
 

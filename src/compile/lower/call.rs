@@ -10,8 +10,8 @@ use crate::compile::context::{
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::{
-    builtin::DISTRIBUTIONS, counted_arguments, function, legs, margins, modes, name, process_names, select,
-    shapes, traffic,
+    builtin::{CHOICES, DISTRIBUTIONS},
+    counted_arguments, function, legs, margins, modes, name, process_names, select, shapes, traffic,
 };
 use crate::logic::Term;
 use crate::model::function::{Signature, Special};
@@ -99,7 +99,13 @@ fn unknown_function(
         }
         return context.lower_all(arguments, locals).and(Err(Reported));
     }
-    let mut known: Vec<&str> = BuiltIn::names().chain(DISTRIBUTIONS).collect();
+    if CHOICES.contains(&name) {
+        let error = error!(E0203, function.span, "`{name}` is a goal, and has no value";
+            hint: "write it in a route, `route = {name}(west, east)`; in formulas use a region of several parts");
+        context.note(error);
+        return context.lower_all(arguments, locals).and(Err(Reported));
+    }
+    let mut known: Vec<&str> = BuiltIn::names().chain(DISTRIBUTIONS).chain(CHOICES).collect();
     let declared: Vec<String> = [locals.scope, 0]
         .iter()
         .filter(|_| context.sink.looks_for_names())

@@ -6,6 +6,7 @@ use crate::compile::context::{
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::{
+    builtin::{CHOICES, QUICKEST},
     laws::{self, advise_bounds},
     shapes,
 };
@@ -19,10 +20,6 @@ use crate::syntax::source::Span;
 const MOST_OPTIONS: usize = 1000;
 /// Most alternatives of a `paths` declaration.
 const MOST_PATHS: i64 = 64;
-/// The goals that are one of several exits.
-const CHOICES: [&str; 2] = ["nearest", QUICKEST];
-/// The one that counts those who wait.
-const QUICKEST: &str = "quickest";
 
 /// A route as written.
 pub(crate) fn route(context: &mut Context<'_>, value: &Value, locals: &Locals) -> Lowered<Route> {

@@ -7,6 +7,7 @@ mod links;
 mod player;
 mod premises;
 mod section;
+mod table;
 
 use super::number::{counted, duration};
 use super::{phrase, text};
@@ -22,6 +23,7 @@ use player::Player;
 use section::Section;
 use sha2::{Digest as _, Sha256};
 use std::sync::Arc;
+pub use table::Table;
 
 const STYLE: &str = include_str!("../../../templates/page.css");
 /// The script in its parts: each uses those before it.
@@ -53,19 +55,6 @@ pub struct Page<'a> {
     pub traces: Traces,
     /// Whether somebody is in the traces twice, which no figure of a crowd is to count.
     pub without_crowd: bool,
-}
-
-/// A table of texts.
-#[derive(Clone, Debug, Default)]
-pub struct Table {
-    /// What it shows.
-    pub title: String,
-    /// What is to be said of it; may be empty.
-    pub note: String,
-    /// Heads of the columns.
-    pub columns: Vec<&'static str>,
-    /// The rows, of which the first 2 000 are shown.
-    pub rows: Vec<Vec<String>>,
 }
 
 #[derive(Template)]

@@ -1,7 +1,7 @@
 //! The premises of an evacuation, as those who approve a building ask for them: the building, its occupants, the model of
 //! people, and the runs.
 
-use super::Table;
+use super::table::Table;
 use crate::base::geometry::Segment;
 use crate::engine::outcome::CallResult;
 use crate::model::{Agent, Leg, Parameter, Route, Scenario};

@@ -2,6 +2,7 @@
 //! the IMO (MSC.1/Circ.1533) call congestion, and for how long.
 
 use super::moments::Moment;
+use crate::report::html::table::Table;
 use crate::report::number::brief;
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ const MOST_PLACES: usize = 10;
 
 /// A row for each square, the longest first: its middle, m; for how long, s in a trace; the greatest density, 1/m². The density is
 /// the mean of 1 / area of the cells of those in the square, if there are two or more.
-pub(super) fn rows(moments: &[Moment], traces: usize) -> Vec<Vec<String>> {
+pub(super) fn table(moments: &[Moment], traces: usize) -> Table {
     let mut squares: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();
     for moment in moments {
         let mut here: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();
@@ -34,5 +35,10 @@ pub(super) fn rows(moments: &[Moment], traces: usize) -> Vec<Vec<String>> {
         let place = format!("({}, {})", *x as f64 + 0.5, *y as f64 + 0.5);
         vec![place, brief(seconds / traces as f64), brief(*most)]
     };
-    all.iter().take(MOST_PLACES).map(row).collect()
+    Table {
+        title: "Densities above 4 per square metre".into(),
+        columns: vec!["above 4 per m² around (m)", "for (s in a trace)", "at most (1/m²)"],
+        rows: all.iter().take(MOST_PLACES).map(row).collect(),
+        ..Table::default()
+    }
 }

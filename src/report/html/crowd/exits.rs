@@ -6,6 +6,7 @@ use super::passage::{flow, spread};
 use crate::base::geometry::Vec2;
 use crate::engine::traces::Trace;
 use crate::model::Scene;
+use crate::report::html::table::Table;
 
 /// Somebody who leaves at most so far from a region leaves by it, m.
 const BESIDE: f64 = 1.0;
@@ -49,7 +50,7 @@ fn exit<'s>(scene: &'s Scene, leaver: &Leaver) -> &'s str {
 
 /// A row for each exit: its name, persons, flow from the first to the last one, and when the last one left; means with ranges over
 /// the traces.
-pub(super) fn rows(traces: &[&Trace]) -> Vec<Vec<String>> {
+pub(super) fn table(traces: &[&Trace]) -> Table {
     let scene = &traces[0].scenario.scene;
     let left: Vec<Vec<Leaver>> = traces.iter().map(|trace| leavers(trace)).collect();
     let mut names: Vec<&str> = left.iter().flatten().map(|leaver| exit(scene, leaver)).collect();
@@ -69,5 +70,10 @@ pub(super) fn rows(traces: &[&Trace]) -> Vec<Vec<String>> {
         let flow = if flows.is_empty() { String::new() } else { spread(&flows, "") };
         vec![name.to_owned(), spread(&persons, ""), flow, spread(&last, "")]
     };
-    names.into_iter().map(row).collect()
+    Table {
+        title: "Exits".into(),
+        columns: vec!["left by", "persons", "flow (1/s)", "last (s)"],
+        rows: names.into_iter().map(row).collect(),
+        ..Table::default()
+    }
 }

@@ -14,6 +14,7 @@ use crate::base::tick::Clock;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::Trace;
 use crate::kernel::Voronoi;
+use crate::report::html::table::Table;
 use crate::report::number::{count, counted, duration};
 use crate::report::phrase::settings;
 use crate::report::svg::frame::Frame;
@@ -37,10 +38,8 @@ pub(super) struct Crowd {
     pub(super) head: String,
     /// Which traces they are from, and what is left out.
     pub(super) note: String,
-    /// A row for each exit by which people left.
-    pub(super) exits: Vec<Vec<String>>,
-    /// A row for each place at which people stood close.
-    pub(super) dense: Vec<Vec<String>>,
+    /// The exits by which people left, and the places at which they stood close; those without a row are left out.
+    pub(super) tables: Vec<Table>,
     pub(super) figures: Vec<Figure>,
 }
 
@@ -79,14 +78,14 @@ fn is_crowd(traces: &[&Trace]) -> bool {
 fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     let scene = &traces[0].scenario.scene;
     let plan = Plan::of(scene, traces)?;
-    let (mut figures, mut dense) = (Vec::new(), Vec::new());
+    let (mut figures, mut tables) = (Vec::new(), Vec::new());
     let lines = scene.lines.iter().take(MOST_LINES).map(|line| passage::figure(line, traces));
     if is_crowd(traces) {
         let moments = moments::moments(&Voronoi::new(scene), traces.iter().map(|trace| &trace.motion));
         figures.extend(heat::figures(&plan, traces, &moments));
         figures.extend(lines);
         figures.extend(speed_density(&moments));
-        dense = dense::rows(&moments, traces.len());
+        tables = vec![exits::table(traces), dense::table(&moments, traces.len())];
     } else {
         figures.extend(lines);
     }
@@ -101,11 +100,11 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
         note += &format!(" Left out: {}.", counted(more as u64, "line"));
     }
     let result = shown.and_then(|shown| run.results.get(shown.result));
-    let exits = if is_crowd(traces) { exits::rows(traces) } else { Vec::new() };
-    if is_crowd(traces) && dense.is_empty() {
+    if tables.last().is_some_and(|dense| dense.rows.is_empty()) {
         note += &format!(" Nowhere did two or more people stand closer than {} per m².", dense::CLOSE);
     }
-    Some(Crowd { head: result.map_or(String::new(), settings), note, exits, dense, figures })
+    tables.retain(|table| !table.rows.is_empty());
+    Some(Crowd { head: result.map_or(String::new(), settings), note, tables, figures })
 }
 
 // Speed against density: a dot for each second of each trace. The density is that of the area that people occupy: their

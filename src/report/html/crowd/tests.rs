@@ -145,10 +145,10 @@ fn people_who_left_are_counted_by_exit() {
         })
         .collect();
     let (crowds, _) = crowds(&CallResult::default(), &[trial(scene.clone(), &walks)]);
-    assert_eq!(crowds[0].exits, [["east", "6", "2", "5.5"]]);
+    assert_eq!(crowds[0].tables[0].rows, [["east", "6", "2", "5.5"]]);
     let map = crowds[0].figures.iter().find(|figure| figure.caption.starts_with("Time to leave"));
     assert!(map.is_some_and(|map| map.svg.contains("<rect")));
     // In a recording people are only not seen any more.
     let (crowds, _) = super::crowds(&CallResult::default(), &[recorded("r", scene, &walks).unwrap()]);
-    assert!(crowds[0].exits.is_empty());
+    assert!(crowds[0].tables.is_empty());
 }
