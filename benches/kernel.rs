@@ -120,6 +120,63 @@ fn open(n: usize) -> Scene {
     Scene { name: format!("open{n}"), walkers, walls: Vec::new(), steps: (2_000_000 / n).clamp(20, 400) }
 }
 
+/// A building of ten rows of sixteen rooms of 10 m by 10 m, each with a door of 1.2 m, and corridors of 4 m between the rows.
+fn rooms(rows: usize, columns: usize) -> Vec<Segment> {
+    let mut walls = Vec::new();
+    let mut wall = |a, b| walls.push(Segment::new(a, b));
+    let width = columns as f64 * 10.0;
+    for row in 0..rows {
+        let y = row as f64 * 14.0;
+        wall(Vec2::new(0.0, y), Vec2::new(width, y));
+        for column in 0..=columns {
+            let x = column as f64 * 10.0;
+            wall(Vec2::new(x, y), Vec2::new(x, y + 10.0));
+        }
+        for column in 0..columns {
+            let x = column as f64 * 10.0;
+            wall(Vec2::new(x, y + 10.0), Vec2::new(x + 4.4, y + 10.0));
+            wall(Vec2::new(x + 5.6, y + 10.0), Vec2::new(x + 10.0, y + 10.0));
+        }
+    }
+    walls
+}
+
+/// In the rooms of a building of 500 walls: each walks in their room.
+fn building(n: usize) -> Scene {
+    let mut rng = SplitMix64(6);
+    let mut walkers = Vec::new();
+    let each = n / 160;
+    for room in 0..160 {
+        let (x, y) = ((room % 16) as f64 * 10.0, (room / 16) as f64 * 14.0);
+        let count = each + usize::from(room < n % 160);
+        let points = lattice(count, (x + 0.4, y + 0.4), (x + 9.6, y + 9.6), 0.2, &mut rng);
+        walkers.extend(by_coin(points, |_| (x + 9.2, x + 0.8), &mut rng));
+    }
+    Scene { name: format!("building{n}"), walkers, walls: rooms(10, 16), steps: 100 }
+}
+
+/// Four persons who stand in each of 100 rooms, among 400 pieces of wall.
+fn standing() -> Scene {
+    let mut rng = SplitMix64(7);
+    let (mut walkers, mut walls) = (Vec::new(), Vec::new());
+    for room in 0..100 {
+        let low = Vec2::new(f64::from(room % 10) * 5.0, f64::from(room / 10) * 5.0);
+        let corner = |x, y| low + Vec2::new(x, y);
+        for (a, b) in [
+            (corner(0.0, 0.0), corner(2.0, 0.0)),
+            (corner(3.0, 0.0), corner(5.0, 0.0)),
+            (corner(0.0, 0.0), corner(0.0, 2.0)),
+            (corner(0.0, 3.0), corner(0.0, 5.0)),
+        ] {
+            walls.push(Segment::new(a, b));
+        }
+        for at in lattice(4, (low.x + 0.5, low.y + 0.5), (low.x + 4.5, low.y + 4.5), 0.3, &mut rng) {
+            walkers.push(Walker { at, speed: 0.0, goal: at.x });
+        }
+    }
+    Scene { name: "standing400".into(), walkers, walls, steps: 1000 }
+}
+
 /// Among as many pieces of wall as an imported building has, most of them far from everybody: a field of
 /// 5 000 beside the scene.
 fn among_walls(mut scene: Scene, far: f64) -> Scene {
@@ -216,6 +273,7 @@ fn scenario(scene: &Scene, walk: Walk) -> Scenario {
         processes: smc::model::Processes::default(),
         behaviours: smc::model::Behaviours::default(),
         sources: Vec::new(),
+        doors: Vec::new(),
     }
 }
 
@@ -370,6 +428,8 @@ fn main() {
         among_walls(corridor20(), 25.0),
         among_walls(open(2_000), 80.0),
         far_from_some(open(2_000)),
+        building(10_000),
+        standing(),
     ];
     let mut out = std::io::stdout().lock();
     for scene in scenes {

@@ -1,5 +1,5 @@
 //! Ways in a building of 500 walls: what the network of shortest ways costs once, what one look-up costs, and what finding
-//! ways adds to a step of ten thousand agents. `cargo bench --bench ways`.
+//! ways adds to a step of ten thousand agents. `cargo bench --bench ways`; `-- straight`: the last without ways alone.
 
 #![allow(clippy::disallowed_methods, reason = "this measures time")]
 
@@ -65,6 +65,14 @@ fn rate(model: &Model, drivers: Drivers, agents: usize, steps: usize) -> f64 {
 
 fn main() {
     let mut out = std::io::stdout().lock();
+    if std::env::args().any(|word| word == "straight") {
+        let (straight, _) = model(10_000, "; wayfinding = straight");
+        for _ in 0..3 {
+            let rate = rate(&straight, Drivers::new(1), 10_000, 250);
+            let _ = writeln!(out, "10000 agents going straight: {rate:.2} M agent-steps/s");
+        }
+        return;
+    }
     let (found, walls) = model(10, "");
     let scene = found.scenario().scene.clone();
     let goal = Goal::Region(RegionId(0));
@@ -88,7 +96,7 @@ fn main() {
     }
     let agents = 10_000;
     let (finding, _) = model(agents, "");
-    let (straight, _) = model(agents, "wayfinding = straight");
+    let (straight, _) = model(agents, "; wayfinding = straight");
     // The lists of corners in sight are made as agents first come by, once a run: the first trial pays for them.
     let ways = Ways::default();
     for trial in ["first", "second", "third"] {

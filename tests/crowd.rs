@@ -176,6 +176,7 @@ impl Crowd {
             processes: smc::model::Processes::default(),
             behaviours: smc::model::Behaviours::default(),
             sources: Vec::new(),
+            doors: Vec::new(),
         }))
     }
 

@@ -81,6 +81,7 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         processes: smc::model::Processes::default(),
         behaviours: smc::model::Behaviours::default(),
         sources: Vec::new(),
+        doors: Vec::new(),
     }
 }
 

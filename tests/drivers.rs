@@ -80,6 +80,7 @@ fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
         processes: smc::model::Processes::default(),
         behaviours: smc::model::Behaviours::default(),
         sources: Vec::new(),
+        doors: Vec::new(),
     }
 }
 

@@ -19,6 +19,7 @@ mod cookbook;
 mod crowd;
 mod determinism;
 mod diagnostics;
+mod doors;
 mod drift;
 mod drive;
 mod drivers;

@@ -72,6 +72,8 @@ pub enum Purpose {
     Resample = 14,
     /// Individuals of a search for parameters, and who is held out of it.
     Search = 15,
+    /// Times at which doors open and close.
+    Door = 16,
     /// Synthetic data and tests.
     Test = 255,
 }

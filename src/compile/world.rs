@@ -175,7 +175,7 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
             doors.extend(scene::settle_scene(context, items, files, (&mut barrier, &mut line)));
         }
     }
-    scene::doors::set(context, &doors);
+    let changing = scene::doors::set(context, &doors);
     let mut people = People::default();
     for item in &file.items {
         match item {
@@ -191,6 +191,7 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
             sources.extend(sources::source(context, decl, &mut people));
         }
     }
+    scene::doors::check(context, &doors, &people.agents);
     let count = variables.len();
     let processes = process::settle_commands(context, variables, &mut people);
     let behaviours = behaviour::settle_behaviours(context, &mut people, count);
@@ -225,6 +226,7 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
         processes,
         behaviours,
         sources,
+        doors: changing,
     })
 }
 

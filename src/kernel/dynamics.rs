@@ -30,6 +30,7 @@ use super::behaviour;
 use super::cells::Cells;
 use super::composure;
 use super::contact::Contacts;
+use super::doors;
 use super::driver;
 use super::force::pair::Sum;
 use super::lanewise::Lanewise;
@@ -71,6 +72,7 @@ pub struct Scratch {
     moved: Vec<Mask>,
     processes: process::Scratch,
     behaviours: behaviour::Scratch,
+    doors: doors::Scratch,
 }
 
 impl Default for Scratch {
@@ -97,6 +99,7 @@ impl Scratch {
             moved: Vec::new(),
             processes: process::Scratch::default(),
             behaviours: behaviour::Scratch::default(),
+            doors: doors::Scratch::default(),
         }
     }
 
@@ -137,6 +140,7 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
 /// One step of all occupied lanes.
 pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     program.behaviours.watch(program.layout, state, &mut scratch.behaviours);
+    program.doors.watch(program.layout, state, &mut scratch.doors);
     program.processes.step(program.layout, state, &mut scratch.processes);
     if state.agents == 0 {
         for (lane, tick) in state.ticks.iter_mut().enumerate() {
@@ -155,6 +159,7 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     if program.behaviours.turn((&program.drive, &program.parameters), state, &scratch.behaviours) {
         scratch.lanewise.forget();
     }
+    program.doors.turn(&program.drive, state, &mut scratch.doors);
     driver::steer_at(scratch.level, &program.drive, state);
     if !program.passing.is_empty() {
         let from = (scratch.seen_x.as_slice(), scratch.seen_y.as_slice());

@@ -7,7 +7,7 @@
 
 use super::contact::Contacts;
 use super::force::pair::{Block, Pair, PairTerm, Sum, is_idle};
-use super::force::walls::{self, AtWalls};
+use super::force::walls::{self, AtWalls, Surfaces};
 use super::force::{Forces, Room, with_pair_terms};
 use super::plane::{Open, Plane};
 use super::state::State;
@@ -126,19 +126,24 @@ impl Lanewise {
         sums.resize(state.agents, Sum::default());
         contacts.clear();
         // A function for each combination of terms: several loops in one would share its registers badly.
+        let (closed, count) = state.doors.each(state.layout);
+        let closed = &closed[..count];
         with_pair_terms!(
             forces,
             term,
             plane,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (term, plane), forces, sums, contacts),
+                || self.pairs(simd, (term, plane), (forces, closed), sums, contacts),
             )
         );
-        simd.vectorize(
-            #[inline(always)]
-            || self.walls(simd, forces, state, sums, contacts),
-        );
+        for &(set, there) in closed {
+            let surfaces = (forces.surfaces(set), there);
+            simd.vectorize(
+                #[inline(always)]
+                || self.walls(simd, (forces, surfaces), state, sums, contacts),
+            );
+        }
         forces.add_cohesion(state, sums);
     }
 
@@ -155,6 +160,8 @@ impl Lanewise {
         sums.clear();
         sums.resize(state.agents, Sum::default());
         let room = Room::of(state);
+        let (closed, count) = state.doors.each(state.layout);
+        let closed = &closed[..count];
         self.kept.resize(state.agents * Room::COUNT, Lanes::ZERO);
         for (index, kept) in self.kept.chunks_exact_mut(Room::COUNT).enumerate() {
             for part in parts(simd) {
@@ -170,11 +177,11 @@ impl Lanewise {
         match forces.closed {
             None => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (room, Open), forces, sums, contacts),
+                || self.pairs(simd, (room, Open), (forces, closed), sums, contacts),
             ),
             Some(plane) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (room, plane), forces, sums, contacts),
+                || self.pairs(simd, (room, plane), (forces, closed), sums, contacts),
             ),
         }
     }
@@ -369,7 +376,7 @@ impl Lanewise {
         &self,
         simd: S,
         (term, plane): (T, P),
-        forces: &Forces,
+        (forces, closed): (&Forces, &[(u32, Mask)]),
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
@@ -408,7 +415,7 @@ impl Lanewise {
                         } else {
                             (part.load(&other.x), part.load(&other.y))
                         };
-                        let hidden = forces.surfaces.hide(screens, part, (x, y), there);
+                        let hidden = forces.hide(closed, screens, part, (x, y), there);
                         pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
                     }
                     let push = term.push(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
@@ -432,16 +439,17 @@ impl Lanewise {
         }
     }
 
+    /// The force of walls in the lanes in which a set of doors is closed.
     #[inline(always)]
     fn walls<S: Simd>(
         &mut self,
         simd: S,
-        forces: &Forces,
+        (forces, (surfaces, there)): (&Forces, (&Surfaces, Mask)),
         state: &State,
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
-        let (list, surfaces) = (&self.neighbours, &forces.surfaces);
+        let list = &self.neighbours;
         for (i, agent) in self.agents.iter().enumerate() {
             let near = &list.surfaces[list.first_surface[i] as usize..list.first_surface[i + 1] as usize];
             if near.is_empty() {
@@ -451,8 +459,10 @@ impl Lanewise {
                 let place = (part.load(&agent.x), part.load(&agent.y));
                 let at =
                     AtWalls::new(part, place, part.load(&agent.r), forces, state, Block { part, index: i });
-                let touching = |k, lanes| contacts.push_wall(i as u32, k, part.bits(lanes));
+                let touching = |k, lanes| contacts.push_wall(i as u32, k, part.bits(lanes) & there);
                 let (fx, fy) = surfaces.push(part, near, &at, forces.margin, &mut self.faces, touching);
+                let (zero, there) = (part.c(0.0), part.mask(there));
+                let (fx, fy) = (there.select(fx, zero), there.select(fy, zero));
                 part.store(part.load(&sums[i].x) + fx, &mut sums[i].x);
                 part.store(part.load(&sums[i].y) + fy, &mut sums[i].y);
             }

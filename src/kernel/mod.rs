@@ -9,6 +9,7 @@ mod cells;
 pub mod code;
 mod composure;
 mod contact;
+mod doors;
 pub mod driver;
 pub mod dynamics;
 mod edges;

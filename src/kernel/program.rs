@@ -2,6 +2,7 @@
 
 use super::behaviour::Behaviours;
 use super::code::{Code, Readings};
+use super::doors::Doors;
 use super::driver::{Drive, Drivers};
 use super::force::Forces;
 use super::near::Close;
@@ -42,6 +43,8 @@ pub struct Program {
     pub processes: Processes,
     /// The sources.
     pub arrivals: Arrivals,
+    /// The doors that may change.
+    pub doors: Doors,
     /// The behaviours.
     pub behaviours: Behaviours,
     /// The lines and regions that formulas ask about.
@@ -66,6 +69,7 @@ impl Program {
         let processes = Processes::new(&scenario);
         let arrivals = Arrivals::new(&scenario);
         let passing = Passing::new(&scenario.scene);
+        let doors = Doors::new(&scenario);
         let behaviours = Behaviours::new(&scenario, &mut drive);
         Self {
             scenario,
@@ -78,6 +82,7 @@ impl Program {
             starts,
             processes,
             arrivals,
+            doors,
             behaviours,
             passing,
         }

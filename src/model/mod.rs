@@ -3,6 +3,7 @@
 pub mod agent;
 pub mod behaviour;
 mod digest;
+pub mod door;
 mod evaluation;
 pub mod expression;
 pub mod function;
@@ -23,6 +24,7 @@ pub mod visit;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
 pub use behaviour::{Amount, Attached, Behaviour, Behaviours, Conduct, Mode, Transition, Trigger};
+pub use door::{ByDoors, Door, Shut};
 pub use expression::{Arithmetic, Axis, Bool, Comparison, Fold, Function, Num, Place, Set, Who};
 pub use function::{BuiltIn, Collective, Field, Pair, Separation};
 pub use index::{BehaviourId, VariableId};

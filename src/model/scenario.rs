@@ -2,6 +2,7 @@
 
 use super::agent::{Agent, Group, Route};
 use super::behaviour::Behaviours;
+use super::door::Door;
 use super::moves::Moves;
 use super::process::Processes;
 use super::scene::Scene;
@@ -31,6 +32,8 @@ pub struct Scenario {
     pub behaviours: Behaviours,
     /// Where people come in; their members are agents of the list above who are absent at first.
     pub sources: Vec<Source>,
+    /// When doors are closed that open or close during a trial, in the order of `scene.doors`.
+    pub doors: Vec<Door>,
 }
 
 /// Most agents whose moves are followed at once, and most options of each.

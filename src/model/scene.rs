@@ -35,6 +35,8 @@ pub struct Scene {
     pub counted: BTreeSet<LineId>,
     /// The regions in which a formula measures how long somebody has been.
     pub timed: BTreeSet<RegionId>,
+    /// The walls that doors are while they are closed, of those that open or close during a trial.
+    pub doors: Vec<BarrierId>,
 }
 
 impl Scene {
@@ -73,6 +75,16 @@ impl Scene {
             Obstacle::Wall(_) => None,
             Obstacle::Solid(shape) => Some(shape),
         })
+    }
+
+    /// The same scene where only these doors are closed of those that may change: bit k is the k-th. An open one is a barrier
+    /// without pieces.
+    pub fn with_closed(&self, closed: u32) -> Cow<'_, Self> {
+        let mut out = Cow::Borrowed(self);
+        for (_, door) in self.doors.iter().enumerate().filter(|(k, _)| closed >> k & 1 == 0) {
+            out.to_mut().barriers[door.0 as usize].obstacle = Obstacle::Wall(Vec::new());
+        }
+        out
     }
 
     /// The barriers, and behind them their images one period away, all in the same order: what is seen and felt from a place

@@ -149,6 +149,7 @@ impl SocialForce {
             processes: Processes::default(),
             behaviours: Behaviours::default(),
             sources: Vec::new(),
+            doors: Vec::new(),
         }))
     }
 }

@@ -6,7 +6,7 @@ use super::goal::Entry;
 use super::network::Network;
 use super::way::ShortestWay;
 use crate::base::geometry::Vec2;
-use crate::model::{Goal, Scene, Sight};
+use crate::model::{ByDoors, Goal, Scene, Sight};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -47,6 +47,30 @@ fn key(goal: &Goal) -> GoalKey {
 struct Sheet {
     network: Network,
     fields: Store<GoalKey, Option<Field>>,
+}
+
+/// The ways of a scene for each set of closed doors.
+#[derive(Debug)]
+pub(super) struct Atlases {
+    scene: Scene,
+    by_doors: ByDoors<Atlas>,
+}
+
+impl Atlases {
+    /// Of a scene.
+    pub(super) fn new(scene: Scene) -> Self {
+        Self { by_doors: ByDoors::new(scene.doors.len()), scene }
+    }
+
+    /// The scene.
+    pub(super) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The ways where these doors are closed of those that may change: bit k is the k-th.
+    pub(super) fn of(&self, closed: u32) -> &Atlas {
+        self.by_doors.of(closed, || Atlas::new(self.scene.with_closed(closed).into_owned()))
+    }
 }
 
 /// All ways of a scene.

@@ -1,6 +1,6 @@
 //! The driver of agents that find their way around barriers.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Atlases};
 use super::planner::{PathOption, Terrains, Walkers, path_options, walkers};
 use super::survey::Doubt;
 use super::way::ShortestWay;
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Answers with the shortest way to the goal of the leg.
 #[derive(Debug)]
 struct Wayfinder {
-    atlas: Arc<Atlas>,
+    atlases: Arc<Atlases>,
 }
 
 /// How much longer a way may be that keeps off corners, as a share of the shortest.
@@ -35,18 +35,18 @@ const KEPT: usize = 8;
 /// The atlases of the scenes of a call and the terrains of its planned kinds, each made once.
 #[derive(Debug, Default)]
 pub struct Ways {
-    known: Mutex<VecDeque<Arc<Atlas>>>,
+    known: Mutex<VecDeque<Arc<Atlases>>>,
     terrains: Arc<Terrains>,
 }
 
 impl Ways {
-    /// The atlas of a scene.
-    fn atlas(&self, scene: &Scene) -> Arc<Atlas> {
+    /// The atlases of a scene.
+    fn atlases(&self, scene: &Scene) -> Arc<Atlases> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(atlas) = known.iter().find(|atlas| atlas.scene() == scene) {
             return Arc::clone(atlas);
         }
-        let atlas = Arc::new(Atlas::new(scene.clone()));
+        let atlas = Arc::new(Atlases::new(scene.clone()));
         known.truncate(KEPT - 1);
         known.push_front(Arc::clone(&atlas));
         atlas
@@ -59,7 +59,7 @@ impl Ways {
         if agents.is_empty() {
             return drivers;
         }
-        drivers.with(agents, Arc::new(Wayfinder { atlas: self.atlas(&scenario.scene) }))
+        drivers.with(agents, Arc::new(Wayfinder { atlases: self.atlases(&scenario.scene) }))
     }
 
     /// The walkers of a scenario that plan.
@@ -86,7 +86,7 @@ impl Ways {
             Vec::new()
         } else {
             let planned = |id, who: &str| planner::doubt(&self.terrains, scenario, seed, id, who);
-            survey::doubts(&self.atlas(&scenario.scene), scenario, &agents, planned)
+            survey::doubts(self.atlases(&scenario.scene).of(0), scenario, &agents, planned)
         }
     }
 }
@@ -118,58 +118,63 @@ impl Driver for Wayfinder {
             Goal::Region(id) => situation.scenario.scene.regions[id.0 as usize].exits.as_slice(),
             Goal::Point(_) => &[],
         };
-        if !exits.is_empty() {
-            return self.quickest(situation, exits, memory);
-        }
-        match self.way(situation, goal) {
-            Some(way) if way.is_straight => Plan::Straight,
-            Some(way) => Plan::Way(way.points().into()),
-            None => Plan::NoWay,
-        }
+        // Whoever has no way while doors are closed waits before one of them.
+        let mut plan = |closed| {
+            let atlas = self.atlases.of(closed);
+            if !exits.is_empty() {
+                return quickest(atlas, situation, exits, memory);
+            }
+            match way(atlas, situation, goal) {
+                Some(way) if way.is_straight => Plan::Straight,
+                Some(way) => Plan::Way(way.points().into()),
+                None => Plan::NoWay,
+            }
+        };
+        let closed = situation.closed_doors();
+        let found = plan(closed);
+        if found == Plan::NoWay && closed != 0 { plan(0) } else { found }
     }
 }
 
-impl Wayfinder {
-    /// The shortest way to a goal, or one that keeps off corners and is hardly longer.
-    fn way(&self, situation: &Situation<'_>, goal: &Goal) -> Option<ShortestWay> {
-        let radius = class(situation);
-        let way = self.atlas.way(situation.position, goal, radius);
-        let aside = situation.parameter(Parameter::Aside);
-        let wide = way.as_ref().filter(|way| aside > 0.0 && !way.is_straight).and_then(|way| {
-            let wide = self.atlas.way(situation.position, goal, Atlas::class(radius + aside, true));
-            wide.filter(|wide| wide.length <= way.length * (1.0 + MORE) + aside)
-        });
-        wide.or(way)
-    }
+/// The shortest way to a goal, or one that keeps off corners and is hardly longer.
+fn way(atlas: &Atlas, situation: &Situation<'_>, goal: &Goal) -> Option<ShortestWay> {
+    let radius = class(situation);
+    let way = atlas.way(situation.position, goal, radius);
+    let aside = situation.parameter(Parameter::Aside);
+    let wide = way.as_ref().filter(|way| aside > 0.0 && !way.is_straight).and_then(|way| {
+        let wide = atlas.way(situation.position, goal, Atlas::class(radius + aside, true));
+        wide.filter(|wide| wide.length <= way.length * (1.0 + MORE) + aside)
+    });
+    wide.or(way)
+}
 
-    /// The way to the quickest exit (Ehtamo, Heliövaara, Korhonen and Hostikka 2010): each person answers the present choices of
-    /// the others. The time to an exit is that of the way at one's own speed, and that in which those who head for it and are
-    /// nearer pass it. The exit that was chosen before is kept unless another one saves a fifth of its time.
-    fn quickest(&self, situation: &Situation<'_>, exits: &[RegionId], memory: &mut Memory) -> Plan {
-        let speed = situation.parameter(Parameter::Speed);
-        let speed = if speed > SLOWEST { speed } else { SLOWEST };
-        let others: Vec<(Vec2, Vec2)> = situation.ends().collect();
-        let before = memory.get::<RegionId>().copied();
-        let mut best: Option<(f64, RegionId)> = None;
-        for exit in exits {
-            let shape = &situation.scenario.scene.regions[exit.0 as usize].shape;
-            let way = self.atlas.way(situation.position, &Goal::Region(*exit), class(situation));
-            let Some(way) = way else { continue };
-            let is_ahead = |(at, end): &&(Vec2, Vec2)| shape.contains(*end) && (at - end).norm() < way.length;
-            let waiting = others.iter().filter(is_ahead).count() as f64;
-            let time = way.length / speed + waiting / (FLOW * width(shape, way.end));
-            let time = if before == Some(*exit) { time * (1.0 - GAIN) } else { time };
-            if best.as_ref().is_none_or(|best| time < best.0) {
-                best = Some((time, *exit));
-            }
+/// The way to the quickest exit (Ehtamo, Heliövaara, Korhonen and Hostikka 2010): each person answers the present choices of
+/// the others. The time to an exit is that of the way at one's own speed, and that in which those who head for it and are
+/// nearer pass it. The exit that was chosen before is kept unless another one saves a fifth of its time.
+fn quickest(atlas: &Atlas, situation: &Situation<'_>, exits: &[RegionId], memory: &mut Memory) -> Plan {
+    let speed = situation.parameter(Parameter::Speed);
+    let speed = if speed > SLOWEST { speed } else { SLOWEST };
+    let others: Vec<(Vec2, Vec2)> = situation.ends().collect();
+    let before = memory.get::<RegionId>().copied();
+    let mut best: Option<(f64, RegionId)> = None;
+    for exit in exits {
+        let shape = &situation.scenario.scene.regions[exit.0 as usize].shape;
+        let way = atlas.way(situation.position, &Goal::Region(*exit), class(situation));
+        let Some(way) = way else { continue };
+        let is_ahead = |(at, end): &&(Vec2, Vec2)| shape.contains(*end) && (at - end).norm() < way.length;
+        let waiting = others.iter().filter(is_ahead).count() as f64;
+        let time = way.length / speed + waiting / (FLOW * width(shape, way.end));
+        let time = if before == Some(*exit) { time * (1.0 - GAIN) } else { time };
+        if best.as_ref().is_none_or(|best| time < best.0) {
+            best = Some((time, *exit));
         }
-        let Some((_, exit)) = best else { return Plan::NoWay };
-        if before == Some(exit) && situation.occasion == Occasion::Looks {
-            return Plan::Keep;
-        }
-        memory.put(exit);
-        self.way(situation, &Goal::Region(exit)).map_or(Plan::NoWay, |way| Plan::Way(way.points().into()))
     }
+    let Some((_, exit)) = best else { return Plan::NoWay };
+    if before == Some(exit) && situation.occasion == Occasion::Looks {
+        return Plan::Keep;
+    }
+    memory.put(exit);
+    way(atlas, situation, &Goal::Region(exit)).map_or(Plan::NoWay, |way| Plan::Way(way.points().into()))
 }
 
 /// The radius for which ways of a body are looked up, m.

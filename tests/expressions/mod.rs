@@ -76,6 +76,7 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         processes: smc::model::Processes::default(),
         behaviours: smc::model::Behaviours::default(),
         sources: Vec::new(),
+        doors: Vec::new(),
     })
 }
 

@@ -38,6 +38,11 @@ impl Bounds {
             }))
         })
     }
+
+    /// Distance from `p` to the rectangle, 0 inside.
+    pub fn distance(&self, p: Vec2) -> f64 {
+        (self.low - p).sup(&(p - self.high)).sup(&Vec2::zeros()).norm()
+    }
 }
 
 impl Shape {

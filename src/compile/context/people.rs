@@ -102,6 +102,7 @@ pub(crate) fn keep_starts(context: &mut Context<'_>, people: People, sources: Ve
         processes: Processes::default(),
         behaviours: Behaviours::default(),
         sources,
+        doors: Vec::new(),
     };
     context.roster.starts = Some(Starts { scenario: Arc::new(scenario), places: people.places });
 }

@@ -85,6 +85,17 @@ pub(crate) fn law(
     }
 }
 
+/// A time that somebody waits, or after which something happens, not negative; `what` is its name in the error.
+pub(crate) fn waiting(context: &mut Context<'_>, value: &Value, locals: &Locals, what: &str) -> Lowered<Law> {
+    let law = self::law(context, value, Dimension::TIME, locals)?;
+    if law.bounds().0 < 0.0 {
+        let (at, said) = (value.span(), format!("{what} cannot be negative"));
+        let text = context.text(at);
+        return context.report(advise_bounds(error!(E0405, at, "{said}"), &law, &text));
+    }
+    Ok(law)
+}
+
 /// The law of a parameter, all of whose values are possible.
 pub(crate) fn parameter_law(
     context: &mut Context<'_>,

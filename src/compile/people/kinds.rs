@@ -8,7 +8,7 @@ use crate::compile::context::{
 };
 use crate::compile::lower::choices;
 use crate::compile::lower::laws;
-use crate::compile::people::{planners, refused, routes, stepping};
+use crate::compile::people::{planners, refused, stepping};
 use crate::compile::presets::{PRESETS, Preset, law};
 use crate::compile::scene::periodic;
 use crate::model::{self, Body, Law, Parameter, Planner, Stepper};
@@ -187,7 +187,7 @@ pub(crate) fn parameters<'f>(
             continue;
         }
         if field.name.name == PREMOVEMENT {
-            let law = routes::waiting(context, &field.value, locals, "a premovement");
+            let law = laws::waiting(context, &field.value, locals, "a premovement");
             context.given_up |= law.is_err();
             if let (Some(kind), Ok(law)) = (&mut kind, law) {
                 kind.premovement = Some(law);

@@ -7,11 +7,11 @@ use crate::compile::context::{
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::{
     builtin::{CHOICES, QUICKEST},
-    laws::{self, advise_bounds},
+    laws::waiting,
     shapes,
 };
 use crate::compile::scene::periodic;
-use crate::model::{AgentId, Goal, Law, Leg, Move, Moves, Region, RegionId, Route, Who};
+use crate::model::{AgentId, Goal, Leg, Move, Moves, Region, RegionId, Route, Who};
 use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
@@ -48,17 +48,6 @@ pub(crate) fn route(context: &mut Context<'_>, value: &Value, locals: &Locals) -
         other => context.report(error!(E0305, other.span(), "expected a route";
                     hint: "write goals joined by arrows: `(9, 3) -> exit`")),
     }
-}
-
-/// A time that somebody stands, not negative; `what` is its name in the error.
-pub(crate) fn waiting(context: &mut Context<'_>, value: &Value, locals: &Locals, what: &str) -> Lowered<Law> {
-    let law = laws::law(context, value, Dimension::TIME, locals)?;
-    if law.bounds().0 < 0.0 {
-        let (at, said) = (value.span(), format!("{what} cannot be negative"));
-        let text = context.text(at);
-        return context.report(advise_bounds(error!(E0405, at, "{said}"), &law, &text));
-    }
-    Ok(law)
 }
 
 pub(crate) fn goal(context: &mut Context<'_>, expr: &Expr, locals: &Locals) -> Lowered<Goal> {

@@ -123,14 +123,11 @@ pub(crate) fn settle_scene<'a>(
                 *line += 1;
             }
             SceneItem::Door { name, ends, fields, span } => {
-                let closed = doors::is_closed(context, fields);
+                let state = doors::state(context, fields);
                 if let Ok(segment) = lower_line(context, ends, *span) {
                     context.scene.lines[*line].segment = segment;
-                    doors.push(doors::Door {
-                        name: name.clone(),
-                        segment,
-                        closed: matches!(closed, Ok(true)),
-                    });
+                    let state = state.unwrap_or(doors::State::Fixed(false));
+                    doors.push(doors::Door { name: name.clone(), segment, state });
                 }
                 *line += 1;
             }

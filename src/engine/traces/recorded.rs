@@ -66,6 +66,7 @@ pub fn recorded(title: &str, scene: Scene, walks: &[Walk]) -> Option<Trace> {
         processes: Processes::default(),
         behaviours: Behaviours::default(),
         sources: Vec::new(),
+        doors: Vec::new(),
     };
     let start = if from == 0.0 { String::new() } else { format!(", from {from} s on") };
     Some(Trace {

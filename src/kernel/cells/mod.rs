@@ -20,13 +20,14 @@ use super::near::{Close, Grid, Index};
 use super::plane::Open;
 use super::state::State;
 use super::vector::parts;
-use crate::base::geometry::{Bounds, Vec2};
+use crate::base::geometry::Vec2;
 use crate::base::lanes::LANES;
 use crate::model::Periods;
 use fearless_simd::Simd;
 use pairs::{Task, Touch};
 use reach::Reach;
 use reach::Sorted;
+use walls::Walls;
 
 /// Room for the forces of one large crowd.
 #[derive(Clone, Debug, Default)]
@@ -45,14 +46,8 @@ pub(super) struct Cells {
     tasks: Vec<Task>,
     touches: Vec<Touch>,
     own: Vec<Sum>,
-    room: Vec<u32>,
-    near: Vec<u32>,
     faces: faces::Room,
-    /// Faces that can stand between any two; of each eight agents of a strip those that are near: where their list starts, and
-    /// one more at the end.
-    dividing: Vec<u32>,
-    first_screen: Vec<u32>,
-    screens: Vec<u32>,
+    walls: Walls,
     /// As in `Close`.
     edge: f64,
     /// How far agents feel each other at the places that were last seen.
@@ -99,7 +94,11 @@ impl Cells {
                 || self.keep(simd, term, state),
             )
         );
-        self.list_dividing(forces);
+        simd.vectorize(
+            #[inline(always)]
+            || self.look_at_walls(simd, &reach, forces, state, contacts),
+        );
+        let surfaces = forces.surfaces(state.doors.sets[0]);
         // A function for each combination of terms, as in `lanewise`.
         with_pair_terms!(
             forces,
@@ -107,13 +106,10 @@ impl Cells {
             plane,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, (term, plane), forces, contacts),
+                || self.pairs(simd, &reach, (term, plane), (forces, surfaces), contacts),
             )
         );
-        simd.vectorize(
-            #[inline(always)]
-            || self.walls(simd, &reach, forces, state, contacts),
-        );
+        self.add_walls();
         self.scatter(sums);
         self.reach = Some(reach);
         contacts.arrange();
@@ -133,7 +129,7 @@ impl Cells {
         sums.clear();
         sums.resize(state.motion.x.len(), Sum::default());
         let Some(reach) = self.reach.filter(|_| state.occupied.has(0)) else { return };
-        let room = Room::of(state);
+        let (room, surfaces) = (Room::of(state), forces.surfaces(state.doors.sets[0]));
         simd.vectorize(
             #[inline(always)]
             || self.keep(simd, room, state),
@@ -141,27 +137,14 @@ impl Cells {
         match forces.closed {
             None => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, (room, Open), forces, contacts),
+                || self.pairs(simd, &reach, (room, Open), (forces, surfaces), contacts),
             ),
             Some(plane) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, &reach, (room, plane), forces, contacts),
+                || self.pairs(simd, &reach, (room, plane), (forces, surfaces), contacts),
             ),
         }
         self.scatter(sums);
-    }
-
-    /// Lists the faces that can stand between any two agents.
-    fn list_dividing(&mut self, forces: &Forces) {
-        self.dividing.clear();
-        if !forces.surfaces.is_empty() {
-            let strips = (0..self.index.grid.strips).flat_map(|strip| self.index.strip(strip));
-            let all = strips.chain(self.image_places().filter(|&at| self.index.r[at] > f64::NEG_INFINITY));
-            let all = Bounds::around(all.map(|at| Vec2::new(self.index.x[at], self.index.y[at])));
-            if let Some(all) = all {
-                forces.surfaces.list_screens(&all, &mut self.dividing);
-            }
-        }
     }
 
     /// Hands the forces to the agents.

@@ -10,6 +10,7 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::force::Forces;
 use crate::kernel::force::pair::{Pair, PairTerm, Sum, is_idle};
+use crate::kernel::force::walls::Surfaces;
 use crate::kernel::near::low_bits;
 use crate::kernel::plane::Plane;
 use crate::kernel::vector::{first_part, larger, parts, width};
@@ -43,14 +44,13 @@ impl Cells {
         simd: S,
         reach: &Reach,
         of: (T, P),
-        forces: &Forces,
+        (forces, surfaces): (&Forces, &Surfaces),
         contacts: &mut Contacts,
     ) {
         for strip in 0..self.index.grid.strips {
             self.list(simd, reach, strip);
             let from = self.index.strip(strip).start;
-            self.list_screens(reach, forces, strip);
-            let found = self.work_off(simd, of, (forces, reach.most), from);
+            let found = self.work_off(simd, of, (forces, surfaces, reach.most), from);
             let agent = &self.index.agent;
             for touch in &self.touches[..found] {
                 for lane in touch.lanes.iter() {
@@ -127,31 +127,13 @@ impl Cells {
         }
     }
 
-    /// Lists which faces may hide others from each eight agents of a strip.
-    fn list_screens(&mut self, reach: &Reach, forces: &Forces, strip: usize) {
-        self.first_screen.clear();
-        self.screens.clear();
-        if self.dividing.is_empty() {
-            return;
-        }
-        let here = self.index.strip(strip);
-        for k in here.clone().step_by(LANES) {
-            let group = k..here.end.min(k + LANES);
-            let around = reach.around(&self.index.x[group.clone()], &self.index.y[group]);
-            let near = forces.surfaces.nearby.find(&around, &mut self.room);
-            self.first_screen.push(self.screens.len() as u32);
-            self.screens.extend(near.iter().filter(|face| self.dividing.binary_search(face).is_ok()));
-        }
-        self.first_screen.push(self.screens.len() as u32);
-    }
-
     /// Works the list off. Gives how many touches were found.
     #[inline(always)]
     fn work_off<S: Simd, T: PairTerm, P: Plane>(
         &mut self,
         simd: S,
         (term, plane): (T, P),
-        (forces, reach): (&Forces, f64),
+        (forces, surfaces, reach): (&Forces, &Surfaces, f64),
         from: usize,
     ) -> usize {
         let part = first_part(simd);
@@ -165,7 +147,7 @@ impl Cells {
             |k| &self.columns[k][..length],
         );
         let (minus_margin, reach) = (part.c(-forces.margin), part.c(reach));
-        let has_screens = !self.screens.is_empty();
+        let has_screens = self.walls.has_screens();
         let mut found = 0;
         for task in &self.tasks {
             let (i, j) = (from + task.one as usize, task.others as usize);
@@ -187,18 +169,12 @@ impl Cells {
                 self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
                 found += usize::from(!lanes.is_empty());
             }
-            if has_screens && pair.distance.simd_lt(reach).any_true() {
-                let group = task.one as usize / LANES;
-                let screens = self.first_screen[group] as usize..self.first_screen[group + 1] as usize;
-                let (place, there) = (
-                    (part.c(xs[i]), part.c(ys[i])),
-                    (part.slice(&xs[j..j + LANES]), part.slice(&ys[j..j + LANES])),
-                );
-                for &face in &self.screens[screens] {
-                    if forces.surfaces.may_hide(face, part, place, there, 0.0).any_true() {
-                        let hidden = forces.surfaces.hides(face, part, place, there);
-                        pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
-                    }
+            if has_screens {
+                let screens = self.walls.screens(i);
+                if !screens.is_empty() && pair.distance.simd_lt(reach).any_true() {
+                    let there = (part.slice(&xs[j..j + LANES]), part.slice(&ys[j..j + LANES]));
+                    let hidden = surfaces.hide(screens, part, (part.c(xs[i]), part.c(ys[i])), there);
+                    pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
                 }
             }
             let one = T::map(

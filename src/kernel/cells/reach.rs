@@ -1,6 +1,5 @@
 //! How far the agents of one large crowd feel each other, and how they are read in sorted order.
 
-use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::force::pair::{AgentsInLanes, Block, PairTerm};
 use crate::kernel::near::{Extent, Grid, most};
@@ -53,17 +52,6 @@ impl Reach {
     /// Width and height of a cell, m.
     pub(super) fn cell(&self) -> (f64, f64) {
         (self.most / CELLS_PER_REACH, self.most)
-    }
-
-    /// A rectangle around all that agents at these places can feel, amply.
-    pub(super) fn around(&self, x: &[f64], y: &[f64]) -> Bounds {
-        let interval = |v: &[f64]| {
-            let low = v.iter().fold(f64::INFINITY, |a, &b| if b < a { b } else { a });
-            let high = v.iter().fold(f64::NEG_INFINITY, |a, &b| if b > a { b } else { a });
-            (low - self.most - self.slack, high + self.most + self.slack)
-        };
-        let (x, y) = (interval(x), interval(y));
-        Bounds { low: Vec2::new(x.0, y.0), high: Vec2::new(x.1, y.1) }
     }
 
     /// How far apart bodies of these radii and any other can be that feel each other.

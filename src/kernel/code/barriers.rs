@@ -5,11 +5,11 @@
 //! one of them, whatever the order, it has the same bits as in a look at all.
 
 use super::ground::Ground;
-use super::lanes::Vector;
+use super::lanes::{Vector, widen};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::geometry::{Nearby, amply_around};
-use crate::base::lanes::LANES;
-use crate::model::Scene;
+use crate::base::lanes::{LANES, Mask};
+use crate::model::{Barrier, Scene};
 use fearless_simd::{Simd, prelude::*};
 
 /// The barriers of a scene.
@@ -20,15 +20,18 @@ pub(super) struct Barriers {
     nearby: Nearby,
     /// Which those are.
     with_pieces: Vec<u32>,
+    /// The doors that may change; all others are above.
+    doors: Vec<Ground>,
 }
 
 impl Barriers {
     pub(super) fn new(scene: &Scene) -> Self {
-        let list: Vec<Ground> =
-            scene.unrolled().iter().map(|barrier| Ground::barrier(&barrier.obstacle)).collect();
+        let ground = |barrier: &Barrier| Ground::barrier(&barrier.obstacle);
+        let list: Vec<Ground> = scene.with_closed(0).unrolled().iter().map(ground).collect();
+        let doors = scene.doors.iter().map(|door| ground(&scene.barriers[door.0 as usize])).collect();
         let some = list.iter().enumerate().filter_map(|(k, ground)| Some((k as u32, *ground.bounds()?)));
         let (with_pieces, bounds): (Vec<u32>, Vec<Bounds>) = some.unzip();
-        Self { nearby: Nearby::new(&bounds), list, with_pieces }
+        Self { nearby: Nearby::new(&bounds), list, with_pieces, doors }
     }
 
     /// One barrier; images come after all others.
@@ -48,6 +51,20 @@ impl Barriers {
         };
         // Which of two zeros comes first may differ; this makes them the same.
         found + 0.0
+    }
+
+    /// The same, with the doors that are closed; `closed` gives the lanes of each in which it is.
+    #[inline(always)]
+    pub(super) fn distance_with_doors<S: Simd>(
+        &self,
+        (x, y): (Vector<S>, Vector<S>),
+        closed: impl Fn(usize) -> Mask,
+    ) -> Vector<S> {
+        let mut found = self.distance(x, y);
+        for (k, door) in self.doors.iter().enumerate() {
+            found = widen(x.simd, closed(k)).select(door.nearer(found, x, y), found);
+        }
+        found
     }
 
     #[inline(always)]

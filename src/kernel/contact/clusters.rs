@@ -10,6 +10,7 @@ use super::{Candidates, at, within_reach, within_reach_of_face};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
 use crate::base::math;
+use crate::kernel::force::walls::Surfaces;
 use crate::kernel::force::{Forces, contact};
 use crate::kernel::state::{Slot, State};
 use crate::model::Parameter;
@@ -181,7 +182,7 @@ impl Clusters {
 
     /// Takes over the present places and velocities, and finds the clusters in which something can touch
     /// within `h` seconds. False if there is none.
-    pub(super) fn heat(&mut self, forces: &Forces, state: &State, h: f64) -> bool {
+    pub(super) fn heat(&mut self, (forces, surfaces): (&Forces, &Surfaces), state: &State, h: f64) -> bool {
         self.x.clear();
         self.motions.clear();
         for body in &self.bodies {
@@ -208,7 +209,7 @@ impl Clusters {
         }
         for touch in &self.walls {
             let hot = &mut self.all[touch.cluster as usize].hot;
-            if !*hot && within_reach_of_face(forces, touch.b, touch.distance, moving(touch.a), h) {
+            if !*hot && within_reach_of_face(surfaces, touch.b, touch.distance, moving(touch.a), h) {
                 *hot = true;
                 cold -= 1;
             }
@@ -255,11 +256,11 @@ impl Clusters {
     }
 
     /// Stops the centres that came upon a face. The spring of contact stops only bodies slower than radius sqrt(k1 / mass).
-    pub(super) fn stop_at_faces(&mut self, forces: &Forces, state: &State) {
+    pub(super) fn stop_at_faces(&mut self, surfaces: &Surfaces, state: &State) {
         for touch in self.walls.iter().filter(|touch| self.all[touch.cluster as usize].hot) {
             let slot = self.bodies[touch.a as usize].slot;
             let (from, to) = (at(&state.motion.x, &state.motion.y, slot), &mut self.x[touch.a as usize]);
-            if let Some((place, normal)) = forces.surfaces.stop(touch.b, from, *to) {
+            if let Some((place, normal)) = surfaces.stop(touch.b, from, *to) {
                 let v = &mut self.motions[touch.a as usize].v;
                 (*to, *v) = (place, *v - normal * math::at_most(v.dot(&normal), 0.0));
             }

@@ -19,6 +19,7 @@ mod overlap;
 mod plain;
 
 use super::force::Forces;
+use super::force::walls::Surfaces;
 use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -106,18 +107,19 @@ impl Contacts {
         h: f64,
     ) {
         for lane in (state.occupied & self.listed).iter() {
+            let surfaces = forces.surfaces(state.doors.sets[lane]);
             let candidates = &self.candidates[lane];
             let clusters = &mut self.clusters[lane];
             if !self.gathered.has(lane) {
-                if !candidates.can_touch(forces, state, lane, h) {
+                if !candidates.can_touch((forces, surfaces), state, lane, h) {
                     continue;
                 }
                 clusters.gather(forces, state, candidates, lane);
                 self.gathered |= Mask::lane(lane);
             }
-            if clusters.heat(forces, state, h) {
-                flow(simd, forces, clusters, h);
-                clusters.stop_at_faces(forces, state);
+            if clusters.heat((forces, surfaces), state, h) {
+                flow(simd, (forces, surfaces), clusters, h);
+                clusters.stop_at_faces(surfaces, state);
                 clusters.hand_back(state, moved);
             }
         }
@@ -126,7 +128,13 @@ impl Contacts {
 
 impl Candidates {
     /// Whether anything in the lane can touch within `h` seconds.
-    fn can_touch(&self, forces: &Forces, state: &State, lane: usize, h: f64) -> bool {
+    fn can_touch(
+        &self,
+        (forces, surfaces): (&Forces, &Surfaces),
+        state: &State,
+        lane: usize,
+        h: f64,
+    ) -> bool {
         let place =
             |slot| (at(&state.motion.x, &state.motion.y, slot), at(&state.motion.vx, &state.motion.vy, slot));
         let radius = |slot: Slot| state.bodies[Parameter::Radius][slot.block].0[slot.lane];
@@ -137,7 +145,7 @@ impl Candidates {
         };
         let wall = |&(i, face): &(u32, u32)| {
             let a = state.slot(i as usize, lane);
-            here(a) && within_reach_of_face(forces, face, radius(a), place(a), h)
+            here(a) && within_reach_of_face(surfaces, face, radius(a), place(a), h)
         };
         self.pairs.iter().any(pair) || self.walls.iter().any(wall)
     }
@@ -159,8 +167,8 @@ fn within_reach(
 }
 
 /// Whether a body of some radius can touch a face within `h` seconds.
-fn within_reach_of_face(forces: &Forces, face: u32, radius: f64, (x, v): (Vec2, Vec2), h: f64) -> bool {
-    forces.surfaces.nearest_to(face, x).near < radius + length(v) * h
+fn within_reach_of_face(surfaces: &Surfaces, face: u32, radius: f64, (x, v): (Vec2, Vec2), h: f64) -> bool {
+    surfaces.nearest_to(face, x).near < radius + length(v) * h
 }
 
 fn at(x: &[Lanes], y: &[Lanes], slot: Slot) -> Vec2 {
@@ -186,7 +194,7 @@ const MOST_SUBSTEPS: f64 = 1000.0;
 
 /// Moves the bodies of the hot clusters over `h` seconds. (Others may drift along, idly.)
 #[inline(always)]
-fn flow<S: Simd>(simd: S, forces: &Forces, clusters: &mut Clusters, h: f64) {
+fn flow<S: Simd>(simd: S, (forces, surfaces): (&Forces, &Surfaces), clusters: &mut Clusters, h: f64) {
     let wanted = (h * (PACKING * clusters.stiffest()).sqrt() / PHASE).ceil();
     let count = math::at_most(math::at_least(wanted, 1.0), MOST_SUBSTEPS) as u32;
     let t = h / f64::from(count);
@@ -198,7 +206,7 @@ fn flow<S: Simd>(simd: S, forces: &Forces, clusters: &mut Clusters, h: f64) {
         }
         if k < count {
             pairs.find(simd, &forces.periods, x, t);
-            walls.find_at_walls(simd, forces, x, t);
+            walls.find_at_walls(simd, surfaces, x, t);
             exchange(pairs, walls, motions);
             drift = if k + 1 < count { t } else { 0.5 * t };
         }

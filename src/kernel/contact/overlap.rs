@@ -6,7 +6,7 @@
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::force::contact::{compression, friction};
-use crate::kernel::force::{Forces, walls};
+use crate::kernel::force::walls::{self, Surfaces};
 use crate::kernel::vector::{first_part, parts};
 use crate::model::Periods;
 use fearless_simd::Simd;
@@ -148,7 +148,7 @@ impl Touches {
 
     /// Finds the bodies that overlap a face, and what it does in a sub-step of `t` seconds.
     #[inline(always)]
-    pub(super) fn find_at_walls<S: Simd>(&mut self, simd: S, forces: &Forces, x: &[Vec2], t: f64) {
+    pub(super) fn find_at_walls<S: Simd>(&mut self, simd: S, surfaces: &Surfaces, x: &[Vec2], t: f64) {
         // The faces of one body stand one after the other.
         let body = |blocks: &[Eight], k: usize| blocks[k / LANES].a[k % LANES];
         let mut first = 0;
@@ -158,7 +158,6 @@ impl Touches {
             let blocks = &self.blocks;
             let faces = (first..first + same).map(|k| blocks[k / LANES].b[k % LANES]);
             let radius = blocks[first / LANES].distance.0[first % LANES];
-            let surfaces = &forces.surfaces;
             let pushes = surfaces.touch(first_part(simd), faces, x[a as usize], radius, &mut self.room);
             for (k, push) in (first..).zip(pushes) {
                 let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);

@@ -39,6 +39,7 @@ fn program() -> Program {
         processes: Processes::default(),
         behaviours: Behaviours::default(),
         sources: Vec::new(),
+        doors: Vec::new(),
     }))
 }
 
@@ -130,7 +131,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                 within_reach(&Periods::default(), radius(i) + radius(j), moving(i), moving(j), H);
         }
         for &(i, face) in walls {
-            hot[i as usize] |= within_reach_of_face(&program.forces, face, radius(i), moving(i), H);
+            hot[i as usize] |= within_reach_of_face(&program.forces.surfaces, face, radius(i), moving(i), H);
         }
         for _ in 0..PEOPLE {
             for &(i, j) in pairs {

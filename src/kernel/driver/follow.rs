@@ -298,14 +298,17 @@ fn is_off(drive: &Drive, state: &mut State, slot: Slot, trajectory: &Trajectory,
     let stands = vx * vx + vy * vy < STANDS * STANDS && pace.norm_squared() > STANDS * STANDS;
     let held = state.plans.held_mut(slot);
     held.stuck = if stands { held.stuck + 1 } else { 0 };
-    held.stuck > LOOKS || !drive.sees(at, trajectory.at(time + AHEAD)[0], radius)
+    let is_stuck = held.stuck > LOOKS;
+    let closed = state.closed_doors(lane);
+    is_stuck || !drive.sees(closed, (at, trajectory.at(time + AHEAD)[0]), radius)
 }
 
 /// Whether the goal of someone who goes straight is out of sight.
 fn is_hidden(drive: &Drive, state: &mut State, slot: Slot) -> bool {
     let person = Person::new(drive, state, slot);
     let (at, radius) = (person.at(), person.radius());
-    way_to(person.target(), at, radius).is_some_and(|way| !drive.sees(at, at + way, radius))
+    let way = way_to(person.target(), at, radius);
+    way.is_some_and(|way| !drive.sees(state.closed_doors(slot.lane), (at, at + way), radius))
 }
 
 /// On a way of points: passes the present one where the next is in sight, and at times any point before one in sight; looks
@@ -322,13 +325,13 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
     let (d, along) = (goal - at, goal - start);
     let square = d.x * d.x + d.y * d.y;
     let passes = d.x * along.x + d.y * along.y <= 0.0 && square <= PASSING * PASSING;
-    let mut blocker = state.plans.held(slot).blocker;
+    let (closed, mut blocker) = (state.closed_doors(lane), state.plans.held(slot).blocker);
     let mut point = first;
     // An agent that keeps a lane turns at its end.
     if square <= radius * radius * 4.0 || passes || is_due && goal == points[first] {
         while point < points.len() {
             let next = points.get(point + 1).copied().unwrap_or(leg);
-            let found = drive.blocker((at, next), radius, blocker);
+            let found = drive.blocker(closed, (at, next), radius, blocker);
             if found.is_some() {
                 blocker = found;
                 break;
@@ -367,13 +370,13 @@ fn keep_lane(drive: &Drive, state: &mut State, slot: Slot, (start, corner, next)
     // Both lines meet where at + t ahead = corner + aside outward.
     let aside = ahead.perp(&(at - corner)) / ahead.perp(&outward);
     let place = corner + aside * outward;
-    let course = &state.plans.courses[block];
+    let (closed, course) = (state.closed_doors(lane), &state.plans.courses[block]);
     let has_lane = (course.goal_x.0[lane], course.goal_y.0[lane]) != (corner.x, corner.y);
     let keeps = (has_lane || vx * vx + vy * vy < least * least)
         && aside > 0.0
         && aside.is_finite()
-        && drive.sees(at, place, radius)
-        && drive.sees(place, next, radius);
+        && drive.sees(closed, (at, place), radius)
+        && drive.sees(closed, (place, next), radius);
     let place = if keeps { place } else { corner };
     let course = &mut state.plans.courses[block];
     if (course.goal_x.0[lane], course.goal_y.0[lane]) != (place.x, place.y) {
@@ -394,8 +397,9 @@ fn sees(drive: &Drive, state: &mut State, slot: Slot, point: Vec2) -> bool {
         return true;
     }
     let line = Segment::new(at, point);
-    let clearance = drive.clearance(&line, radius);
-    let sees = clearance >= 0.5 * radius || drive.sees(at, point, radius);
+    let closed = state.closed_doors(slot.lane);
+    let clearance = drive.clearance(closed, &line, radius);
+    let sees = clearance >= 0.5 * radius || drive.sees(closed, (at, point), radius);
     state.plans.held_mut(slot).free = sees.then_some((line, clearance));
     sees
 }

@@ -78,6 +78,22 @@ pub(super) fn renew(drive: &Drive, state: &mut State, slot: Slot) {
     Person::new(drive, state, slot).renew();
 }
 
+/// Everybody in the trial of a lane who is on a way is to be asked again: doors have opened or closed.
+pub(super) fn look_for_ways(drive: &Drive, state: &mut State, lane: usize) {
+    if state.plans.is_empty() {
+        return;
+    }
+    for agent in (0..state.agents).filter(|&agent| drive.drivers.of(agent).is_some()) {
+        let slot = state.slot(agent, lane);
+        let is_here = state.present[slot.block].has(slot.lane);
+        if is_here && matches!(state.plans.plan(slot), Some(Plan::Way(_) | Plan::Straight | Plan::NoWay)) {
+            let held = state.plans.held_mut(slot);
+            (held.free, held.blocker) = (None, None);
+            state.plans.ask(slot, Occasion::Doors);
+        }
+    }
+}
+
 /// Moves agents that move by themselves to where their step ends; to be called with the positions after a step, before
 /// anything looks at them.
 pub(super) fn arrive(state: &mut State, moved: &[Mask]) {

@@ -249,10 +249,11 @@ impl<'a> Person<'a> {
     fn sees_next(&self) -> bool {
         let slot = Slot { block: self.block, lane: self.lane };
         let (at, radius) = (self.at(), self.radius());
+        let closed = self.state.closed_doors(self.lane);
         let next = &self.drive.stages[self.way.stage as usize + 1].target;
         self.drive.drivers.of(self.agent).is_none()
             || self.state.plans.has_trajectory(slot)
-            || way_to(next, at, radius).is_none_or(|way| self.drive.sees(at, at + way, radius))
+            || way_to(next, at, radius).is_none_or(|way| self.drive.sees(closed, (at, at + way), radius))
     }
 
     /// Where its stage leads.

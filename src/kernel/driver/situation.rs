@@ -69,6 +69,11 @@ impl<'a> Situation<'a> {
         }
     }
 
+    /// The doors that are closed, of those that may change: bit k is the k-th.
+    pub fn closed_doors(&self) -> u32 {
+        self.state.closed_doors(self.slot.lane)
+    }
+
     /// A parameter of the agent at present, SI units.
     pub fn parameter(&self, parameter: Parameter) -> f64 {
         self.slot.of(&self.state.bodies[parameter])

@@ -5,7 +5,7 @@ use super::person::way_to;
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
-use crate::model::{AgentId, Goal, Law, Leg, Move, Route, Scenario, Sight};
+use crate::model::{AgentId, ByDoors, Goal, Law, Leg, Move, Route, Scenario, Sight};
 use std::sync::Arc;
 
 /// A body that fits wherever a line does, m.
@@ -77,8 +77,8 @@ pub struct Drive {
     /// Length of a step, s.
     pub(in crate::kernel) dt: f64,
     pub(super) drivers: Drivers,
-    /// What hides points of ways; of no barrier without drivers.
-    pub(super) sight: Sight,
+    /// What hides points of ways, for each set of closed doors; of no barrier without drivers.
+    sights: ByDoors<Sight>,
     /// The routes that stages belong to.
     pub(super) routes: Vec<Route>,
     pub(super) stages: Vec<Stage>,
@@ -155,12 +155,11 @@ impl Drive {
     /// Works out the routes. Neighbours in the list of agents with the same route share its stages, so
     /// that a crowd is steered as one.
     pub fn new(scenario: &Arc<Scenario>, drivers: Drivers) -> Self {
-        let sight = if drivers.is_empty() { Sight::default() } else { Sight::new(&scenario.scene) };
         let mut out = Self {
             scenario: Arc::clone(scenario),
             dt: scenario.clock.step_seconds(),
             drivers,
-            sight,
+            sights: ByDoors::new(scenario.scene.doors.len()),
             routes: Vec::new(),
             stages: Vec::new(),
             first: Vec::new(),
@@ -191,20 +190,34 @@ impl Drive {
         own.find_map(|(_, stages)| stages.get(number).copied())
     }
 
+    /// What hides points where these doors are closed.
+    fn sight(&self, closed: u32) -> &Sight {
+        self.sights.of(closed, || {
+            let scene = &self.scenario.scene;
+            if self.drivers.is_empty() { Sight::default() } else { Sight::new(&scene.with_closed(closed)) }
+        })
+    }
+
     /// Whether a place is in sight of somebody of a radius, m: half of the body passes. Whoever turns around a corner in a crowd
     /// is never quite on the line that touches it.
-    pub(super) fn sees(&self, from: Vec2, to: Vec2, radius: f64) -> bool {
-        self.blocker((from, to), radius, None).is_none()
+    pub(super) fn sees(&self, closed: u32, (from, to): (Vec2, Vec2), radius: f64) -> bool {
+        self.blocker(closed, (from, to), radius, None).is_none()
     }
 
     /// How near a barrier is to a line, m, as far as somebody may be off it in a look or two.
-    pub(super) fn clearance(&self, line: &Segment, radius: f64) -> f64 {
-        self.sight.clearance((line.a, line.b), 0.5 * radius + ASIDE)
+    pub(super) fn clearance(&self, closed: u32, line: &Segment, radius: f64) -> f64 {
+        self.sight(closed).clearance((line.a, line.b), 0.5 * radius + ASIDE)
     }
 
     /// The piece of a barrier that hides a place from somebody, by its number; one that is likely is looked at first.
-    pub(super) fn blocker(&self, line: (Vec2, Vec2), radius: f64, likely: Option<u32>) -> Option<u32> {
-        self.sight.blocker(line, 0.5 * radius, likely)
+    pub(super) fn blocker(
+        &self,
+        closed: u32,
+        line: (Vec2, Vec2),
+        radius: f64,
+        likely: Option<u32>,
+    ) -> Option<u32> {
+        self.sight(closed).blocker(line, 0.5 * radius, likely)
     }
 
     /// Adds a route that a state of a behaviour or a move demands; its first stage. Its legs have numbers of their own:
@@ -223,7 +236,7 @@ impl Drive {
             let ahead =
                 middle.and_then(|middle| Some((middle, way_to(&self.stages[k].target, middle, 0.0)?)));
             self.stages[k - 1].open =
-                ahead.is_some_and(|(middle, way)| self.sight.is_clear(middle, middle + way, NARROW));
+                ahead.is_some_and(|(middle, way)| self.sight(0).is_clear(middle, middle + way, NARROW));
         }
         self.routes.push(route.clone());
         first

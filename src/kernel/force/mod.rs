@@ -16,11 +16,13 @@ pub(super) mod walls;
 use super::pace::fastest;
 use super::plane::Closed;
 use super::state::{Slot, State};
+use super::vector::{Doubles, Part, Truths};
 use crate::base::geometry::{Vec2, cross};
-use crate::base::lanes::Lanes;
+use crate::base::lanes::{Lanes, Mask};
 use crate::base::math::{at_least, atan2};
-use crate::model::{Agent, Body, Group, Kind, Law, Parameter, Periods, Scenario};
+use crate::model::{Agent, Barrier, Body, ByDoors, Group, Kind, Law, Parameter, Periods, Scenario};
 pub(super) use ahead::Ahead;
+use fearless_simd::Simd;
 pub(super) use pair::Both;
 use pair::Sum;
 use social::Particles;
@@ -34,8 +36,12 @@ const APPROACH: f64 = 5.0;
 /// What the forces need to know of a scenario, the same in every trial.
 #[derive(Clone, Debug)]
 pub struct Forces {
-    /// Walls and obstacles.
+    /// Walls and obstacles, all doors closed.
     pub(super) surfaces: Surfaces,
+    /// The same with fewer doors closed, from these barriers and doors; none where no door may change.
+    by_doors: ByDoors<Surfaces>,
+    barriers: Vec<Barrier>,
+    doors: Vec<usize>,
     groups: Vec<Cohesion>,
     /// Along which axes the plane closes on itself, and the same for vectors.
     pub(super) periods: Periods,
@@ -174,8 +180,13 @@ impl Forces {
         let speeds = scenario.agents.iter().any(of_speeds).then_some(all);
         let is_shared = particles.repulsion.is_empty() && speeds.is_none();
         let shared = first_range.zip(second_range).filter(|_| is_shared);
+        let doors: Vec<usize> = scenario.scene.doors.iter().map(|door| door.0 as usize).collect();
+        let barriers = scenario.scene.unrolled();
         Self {
-            surfaces: Surfaces::new(&scenario.scene.unrolled()),
+            surfaces: Surfaces::new(&barriers, |_| false),
+            by_doors: ByDoors::new(doors.len()),
+            barriers: if doors.is_empty() { Vec::new() } else { barriers.into_owned() },
+            doors,
             periods: scenario.scene.periods,
             closed: Closed::with(&scenario.scene.periods),
             groups: Cohesion::all(scenario),
@@ -188,6 +199,41 @@ impl Forces {
             repulsion,
             margin: at_least(APPROACH, 2.0 * fastest(scenario)) * dt,
         }
+    }
+
+    /// Walls and obstacles where these doors are closed. A face has the same number whatever is closed.
+    #[inline(always)]
+    pub(super) fn surfaces(&self, closed: u32) -> &Surfaces {
+        if self.doors.is_empty() { &self.surfaces } else { self.surfaces_of(closed) }
+    }
+
+    /// Where any of some faces is between two bodies; `closed` has sets of closed doors with their lanes.
+    #[inline(always)]
+    pub(super) fn hide<S: Simd>(
+        &self,
+        closed: &[(u32, Mask)],
+        faces: &[u32],
+        part: Part<S>,
+        place: (Doubles<S>, Doubles<S>),
+        other: (Doubles<S>, Doubles<S>),
+    ) -> Truths<S> {
+        let mut hidden = part.mask(Mask::NONE);
+        for &(set, lanes) in closed {
+            hidden |= self.surfaces(set).hide(faces, part, place, other) & part.mask(lanes);
+        }
+        hidden
+    }
+
+    #[cold]
+    fn surfaces_of(&self, closed: u32) -> &Surfaces {
+        self.by_doors.of(closed, || {
+            // Images stand behind the barriers, in the same order.
+            let count = self.barriers.len() / self.periods.images().len().max(1);
+            let is_open = |k: usize| {
+                self.doors.iter().position(|&door| door == k % count).is_some_and(|k| closed >> k & 1 == 0)
+            };
+            Surfaces::new(&self.barriers, is_open)
+        })
     }
 
     /// Adds the attraction within groups.

@@ -1,5 +1,6 @@
 //! How the plane is cut into strips and cells.
 
+use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math::at_least;
 use crate::kernel::state::State;
@@ -28,6 +29,12 @@ pub(in crate::kernel) struct Extent {
 }
 
 impl Extent {
+    /// The same rectangle and what is so near to it, m.
+    pub(in crate::kernel) fn around(&self, more: f64) -> Bounds {
+        let (low, more) = (Vec2::new(self.x, self.y), Vec2::repeat(more));
+        Bounds { low: low - more, high: low + Vec2::new(self.wide, self.high) + more }
+    }
+
     /// Of the only trial of a state.
     #[inline(always)]
     pub(in crate::kernel) fn of<S: Simd>(simd: S, state: &State) -> Self {

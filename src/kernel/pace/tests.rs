@@ -51,6 +51,7 @@ fn scenario(speed: Law, noise: Law, changes: Vec<(Parameter, Amount)>) -> Scenar
         processes: Processes { variables: variables.collect(), ..Processes::default() },
         behaviours: Behaviours { declared: Vec::new(), attached: vec![attached] },
         sources: Vec::new(),
+        doors: Vec::new(),
     }
 }
 

@@ -104,6 +104,7 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.diverged &= !Mask::lane(lane);
     state.no_way &= !Mask::lane(lane);
     program.processes.load(state, lane);
+    program.doors.load(state, lane, key);
     program.arrivals.load(state, lane, key);
     let slots = state.layout.slots_of(Mask::lane(lane));
     state.passages.load(&program.scenario.scene, state.present.len(), (lane, slots));

@@ -7,6 +7,7 @@
 
 mod bodies;
 mod clocks;
+mod doors;
 mod passages;
 pub(super) mod plans;
 pub(super) mod progress;
@@ -20,6 +21,7 @@ use crate::base::random::TrialKey;
 use crate::model::{AgentId, Periods, Scenario, Source};
 pub use bodies::Bodies;
 pub use clocks::Clocks;
+pub use doors::ClosedDoors;
 pub use passages::Passages;
 pub use plans::Plans;
 pub use progress::Progress;
@@ -67,6 +69,8 @@ pub struct State {
     /// Arrivals of the sources.
     pub queues: Queues,
 
+    /// Doors that may change.
+    pub doors: ClosedDoors,
     /// Values of the variables of processes, whose lanes are trials in both layouts.
     pub variables: Vec<Lanes>,
     /// Clocks of processes with rates and delays.
@@ -100,6 +104,7 @@ impl State {
             columns: Vec::new(),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),
+            doors: ClosedDoors::default(),
             variables: Vec::new(),
             clocks: Clocks::default(),
             faulty: Mask::NONE,
@@ -131,6 +136,12 @@ impl State {
                 driving.rest_y[block].0[lane] += image.y - p.y;
             }
         }
+    }
+
+    /// The doors that are closed in the trial of a slot in a lane: bit k is the k-th that may change.
+    #[inline(always)]
+    pub fn closed_doors(&self, lane: usize) -> u32 {
+        self.doors.sets[self.layout.trial_of(lane)]
     }
 
     /// Where agent `agent` of the trial in lane `lane` is kept.

@@ -25,8 +25,13 @@ pub(super) fn table(scenario: &Scenario, run: &CallResult) -> Option<Table> {
     let solids = counted(scene.solids().count() as u64, "obstacle");
     row("building".into(), format!("{} m of walls, {solids}", number(walls)));
     for line in &scene.lines {
-        let closed = scene.barriers.iter().any(|barrier| barrier.name == line.name);
-        let state = if closed { ", closed" } else { "" };
+        let barrier = scene.barriers.iter().position(|barrier| barrier.name == line.name);
+        let changes = |k| scene.doors.iter().any(|door| door.0 as usize == k);
+        let state = match barrier {
+            Some(k) if changes(k) => ", opens or closes during a trial",
+            Some(_) => ", closed",
+            None => "",
+        };
         row(
             format!("door or line {}", line.name),
             format!("{} m wide{state}", number(line.segment.length())),

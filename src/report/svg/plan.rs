@@ -108,7 +108,8 @@ pub fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing
             Position::Near { .. } => {}
         }
     }
-    for barrier in &scene.barriers {
+    // Doors that may change are drawn open.
+    for barrier in &scene.with_closed(0).barriers {
         match &barrier.obstacle {
             Obstacle::Wall(segments) => segments.iter().for_each(|s| drawing.line(&[s.a, s.b], Ink::BARRIER)),
             Obstacle::Solid(shape) => drawing.shape(shape, Ink::BARRIER),
@@ -124,7 +125,7 @@ pub fn scene(scenario: &Scenario) -> Drawing {
 
 /// The plan of a scenario.
 pub fn draw(scenario: &Scenario) -> Picture {
-    let atlas = Atlas::new(scenario.scene.clone());
+    let atlas = Atlas::new(scenario.scene.with_closed(0).into_owned());
     let shown = shown(scenario);
     let ways = shown.iter().filter_map(|agent| way(&atlas, agent, &agent.route));
     let ways: Vec<(Vec<Vec2>, f64)> = ways.collect();

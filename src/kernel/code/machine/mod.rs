@@ -250,7 +250,10 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
             Node::ToBarrier(x, y, barrier) => {
                 self.code.barriers.at(barrier).signed_distance(self.number(x), self.number(y))
             }
-            Node::ToScene(x, y) => self.code.barriers.distance(self.number(x), self.number(y)),
+            Node::ToScene(x, y) => {
+                let closed = |door| state.doors.lanes(door, state.layout);
+                self.code.barriers.distance_with_doors((self.number(x), self.number(y)), closed)
+            }
             Node::OfTwo(pair, a, b) => {
                 crowd::of_two((&view, &self.code.periods), pair, self.body(a), self.body(b))
             }

@@ -28,6 +28,30 @@ pub(super) enum Form {
     Disc,
     /// A whole barrier: a polygon, which pushes those who got into it.
     Inside,
+    /// A door that is open: it does nothing.
+    Open,
+}
+
+/// What a face hides others behind.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Screen {
+    Piece(Segment),
+    Disc { centre: Vec2, radius: f64 },
+}
+
+impl Screen {
+    /// Of a face of a barrier.
+    pub(super) fn new(form: &Form, barrier: &Surface) -> Option<Self> {
+        match form {
+            Form::Side(side) => Some(Self::Piece(side.piece())),
+            Form::Disc => {
+                let half = 0.5 * (barrier.bounds.high - barrier.bounds.low);
+                Some(Self::Disc { centre: barrier.centre(), radius: half.x })
+            }
+            // Its edges hide who is inside.
+            Form::Inside | Form::Open => None,
+        }
+    }
 }
 
 /// A straight piece.
@@ -69,6 +93,26 @@ pub(in crate::kernel) struct NearestTo {
     pub(in crate::kernel) distance: f64,
     pub(in crate::kernel) fading: f64,
     pub(in crate::kernel) fades: bool,
+}
+
+impl<S: Simd> Nearest<S> {
+    /// Of a face that does nothing.
+    #[inline(always)]
+    pub(super) fn none(part: Part<S>) -> Self {
+        let (zero, far) = (part.c(0.0), part.c(f64::INFINITY));
+        Self { nx: zero, ny: zero, near: far, distance: far, fading: zero, fades: part.mask(Mask::NONE) }
+    }
+}
+
+impl NearestTo {
+    /// The same.
+    pub(super) const NONE: Self = Self {
+        normal: Vec2::new(0.0, 0.0),
+        near: f64::INFINITY,
+        distance: f64::INFINITY,
+        fading: 0.0,
+        fades: false,
+    };
 }
 
 impl Side {

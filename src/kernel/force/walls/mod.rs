@@ -25,6 +25,7 @@ mod screen;
 mod sharing;
 #[cfg(test)]
 mod tests;
+mod tiles;
 
 use super::Forces;
 use super::pair::AgentsInLanes;
@@ -37,11 +38,15 @@ use crate::kernel::edges::squared_distance;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::model::{Barrier, Obstacle, Parameter};
-use face::{Form, Nearest, NearestTo, Side, meets_disc, nearest_of_whole, nearest_of_whole_to, sides_of};
+use face::{
+    Form, Nearest, NearestTo, Screen, Side, meets_disc, nearest_of_whole, nearest_of_whole_to, sides_of,
+};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use sharing::{Push, share};
 use std::f64::consts::LOG2_E;
+use std::sync::Arc;
+pub(in crate::kernel) use tiles::Tiles;
 
 /// Powers of two below this are not felt: of a social force, and of a turn, which is felt as far as it changes a double.
 const LEAST: f64 = -REACH * LOG2_E;
@@ -68,6 +73,8 @@ struct Face {
     /// The barrier that it belongs to.
     barrier: u32,
     bounds: Bounds,
+    /// What it hides others behind.
+    screen: Option<Screen>,
     /// Where it meets others, in their order.
     joints: Vec<Joint>,
     /// The first of the faces that it hangs together with; `None` if there is no other.
@@ -81,6 +88,8 @@ pub(in crate::kernel) struct Surfaces {
     faces: Vec<Face>,
     /// Which faces may be near.
     pub(in crate::kernel) nearby: Nearby,
+    /// Tells them from others: what was worked out from them holds for their copies alone.
+    mark: Arc<()>,
 }
 
 /// Bodies as walls push them.
@@ -136,14 +145,17 @@ pub(in crate::kernel) struct Room {
 }
 
 impl Surfaces {
-    /// Of a scene.
-    pub(in crate::kernel) fn new(barriers: &[Barrier]) -> Self {
-        let there: Vec<(&Barrier, Surface)> =
-            barriers.iter().filter_map(|barrier| Some((barrier, Surface::new(barrier)?))).collect();
-        let (barriers, wholes): (Vec<&Barrier>, Vec<Surface>) = there.into_iter().unzip();
+    /// Of a scene. A barrier that `is_open` has its faces, but these do nothing.
+    pub(in crate::kernel) fn new(barriers: &[Barrier], is_open: impl Fn(usize) -> bool) -> Self {
+        let number = |(k, barrier)| Some(((k, barrier), Surface::new(barrier)?));
+        let (barriers, wholes): (Vec<(usize, &Barrier)>, Vec<Surface>) =
+            barriers.iter().enumerate().filter_map(number).unzip();
         let mut faces = Vec::new();
-        for (k, barrier) in barriers.iter().enumerate() {
-            faces.extend(forms(barrier, &wholes[k]).into_iter().map(|(form, bounds)| Face {
+        for (k, &(number, barrier)) in barriers.iter().enumerate() {
+            let is_open = is_open(number);
+            let felt = |(form, bounds)| (if is_open { Form::Open } else { form }, bounds);
+            faces.extend(forms(barrier, &wholes[k]).into_iter().map(felt).map(|(form, bounds)| Face {
+                screen: Screen::new(&form, &wholes[k]),
                 form,
                 barrier: k as u32,
                 bounds,
@@ -168,7 +180,7 @@ impl Surfaces {
         for (face, first) in faces.iter_mut().zip(structures) {
             face.structure = (sizes[first as usize] > 1).then_some(first);
         }
-        Self { wholes, faces, nearby }
+        Self { wholes, faces, nearby, mark: Arc::default() }
     }
 
     /// Whether there is none.
@@ -177,7 +189,6 @@ impl Surfaces {
     }
 
     /// How many faces there are.
-    #[cfg(test)]
     pub(in crate::kernel) const fn len(&self) -> usize {
         self.faces.len()
     }
@@ -206,6 +217,7 @@ impl Surfaces {
         match form {
             Form::Side(side) => side.nearest(part, x, y),
             Form::Disc | Form::Inside => nearest_of_whole(&self.wholes[*barrier as usize], part, x, y),
+            Form::Open => Nearest::none(part),
         }
     }
 
@@ -215,6 +227,7 @@ impl Surfaces {
         match form {
             Form::Side(side) => side.nearest_to(p),
             Form::Disc | Form::Inside => nearest_of_whole_to(&self.wholes[*barrier as usize], p),
+            Form::Open => NearestTo::NONE,
         }
     }
 
@@ -226,7 +239,7 @@ impl Surfaces {
             Form::Side(side) => side.meets(from, to)?,
             Form::Disc => meets_disc(&self.wholes[*barrier as usize], from, to)?,
             // Its edges stop those who are outside.
-            Form::Inside => return None,
+            Form::Inside | Form::Open => return None,
         };
         let left = 1.0 - ON / height;
         Some((from + (to - from) * if left > 0.0 { share * left } else { 0.0 }, normal))
@@ -416,14 +429,17 @@ impl Surfaces {
             if barrier != other_face.barrier {
                 (barrier, on_face) = (other_face.barrier, false);
             }
-            let theirs = self.nearest_to(*other, p);
             let is_on = self.nearest_to(*other, foot).near <= ON;
+            if !is_on {
+                continue;
+            }
+            let theirs = self.nearest_to(*other, p);
             if matches!(other_face.form, Form::Inside) {
                 let is_open = on_face && theirs.near >= 0.0;
-                if is_on && !is_open && theirs.near < distance {
+                if !is_open && theirs.near < distance {
                     left = 0.0;
                 }
-            } else if theirs.distance < f64::INFINITY && is_on {
+            } else if theirs.distance < f64::INFINITY {
                 on_face = true;
                 let is_nearer = theirs.distance < distance || *other < index && theirs.distance == distance;
                 let way = foot - p + theirs.normal * theirs.near;

@@ -7,33 +7,16 @@
 //! Most faces have all people on one side, as the walls of a room that nobody leaves: they are sorted out beforehand, for
 //! everybody at once.
 
-use super::face::Form;
-use super::{Face, Surfaces};
-use crate::base::geometry::{Bounds, Segment, Vec2, cross};
+use super::Surfaces;
+use super::face::Screen;
+use crate::base::geometry::{Bounds, Vec2, cross};
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-/// What a face hides others behind.
-#[derive(Clone, Copy, Debug)]
-enum Screen {
-    Piece(Segment),
-    Disc { centre: Vec2, radius: f64 },
-}
-
 impl Surfaces {
     fn screen(&self, face: u32) -> Option<Screen> {
-        let Face { form, barrier, .. } = &self.faces[face as usize];
-        match form {
-            Form::Side(side) => Some(Screen::Piece(side.piece())),
-            Form::Disc => {
-                let disc = &self.wholes[*barrier as usize];
-                let half = 0.5 * (disc.bounds.high - disc.bounds.low);
-                Some(Screen::Disc { centre: disc.centre(), radius: half.x })
-            }
-            // Its edges hide who is inside.
-            Form::Inside => None,
-        }
+        self.faces[face as usize].screen
     }
 
     /// Lists the faces that can stand between two places of a rectangle, ascending.

@@ -89,7 +89,7 @@ impl Plan {
             }
             Shape::Parts(_) => String::new(),
         };
-        let walls: String = scene.walls().map(line).collect();
+        let walls: String = scene.with_closed(0).walls().map(line).collect();
         let solids: String = scene.solids().map(solid).collect();
         let lines: String = scene.lines.iter().map(|one| line(&one.segment)).collect();
         let mut drawn = String::new();

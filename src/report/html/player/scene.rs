@@ -80,7 +80,7 @@ pub(super) fn scene(scenario: &Scenario) -> Value {
     };
     json!({
         "unit": if scenario.clock == Clock::Steps { "steps" } else { "s" },
-        "walls": scene.walls().map(wall).collect::<Vec<_>>(),
+        "walls": scene.with_closed(0).walls().map(wall).collect::<Vec<_>>(),
         "solids": scene.solids().map(outline).collect::<Vec<_>>(),
         "regions": scene.shown_regions().flat_map(region).collect::<Vec<_>>(),
         "points": scene.points.iter().map(point).collect::<Vec<_>>(),

@@ -27,7 +27,7 @@ fn block(low: Vec2, high: Vec2) -> Barrier {
 
 /// What is felt in full at a place: unit vectors away from faces, and distances.
 fn felt(barriers: &[Barrier], place: Vec2) -> Vec<(Vec2, f64)> {
-    let all = Surfaces::new(barriers);
+    let all = Surfaces::new(barriers, |_| false);
     let faces = (0..all.len() as u32).map(|k| (all.nearest_to(k, place), left_at(&all, k, place)));
     let full = faces.filter(|(_, left)| *left == 1.0);
     full.map(|(nearest, _)| (nearest.normal, nearest.distance)).collect()
@@ -52,9 +52,9 @@ fn pieces_that_do_not_meet_have_no_joint_and_those_that_do_a_small_one() {
         wall(&[turn(flip(a)), turn(flip(b))])
     };
     let apart: Vec<Barrier> = (0..40).map(|k| row(k, false)).collect();
-    assert!(Surfaces::new(&apart).faces.iter().all(|face| face.joints.is_empty()));
+    assert!(Surfaces::new(&apart, |_| false).faces.iter().all(|face| face.joints.is_empty()));
     let grid: Vec<Barrier> = (0..20).map(|k| row(k / 2, k % 2 == 0)).collect();
-    for face in Surfaces::new(&grid).faces {
+    for face in Surfaces::new(&grid, |_| false).faces {
         assert_eq!(face.joints.len(), 10);
         assert!(face.joints.iter().all(|joint| (joint.around.high - joint.around.low).norm() < 0.02));
     }
@@ -178,7 +178,7 @@ proptest! {
         x in prop::array::uniform8(-1.0..3.0),
         y in prop::array::uniform8(-1.0..3.0),
     ) {
-        let all = Surfaces::new(&barriers);
+        let all = Surfaces::new(&barriers, |_| false);
         let found = dispatch!(Level::new(), simd => eight(simd, &all, &Lanes(x), &Lanes(y)));
         for lane in 0..8 {
             let place = p(x[lane], y[lane]);

@@ -20,7 +20,7 @@ fn around_hole(hole: &[Vec2]) -> Barrier {
 
 /// Sum of the social forces on a body of radius 0.3 m with A = 1 N at a place, N.
 fn force(barriers: &[Barrier], place: Vec2, range: f64) -> Vec2 {
-    let all = Surfaces::new(barriers);
+    let all = Surfaces::new(barriers, |_| false);
     let at = [place; 8];
     let [x, y] = dispatch!(Level::new(), simd => forces(simd, &all, &at, range));
     p(x.0[0], y.0[0])
@@ -173,7 +173,7 @@ fn a_round_wall_of_straight_pieces_pushes_the_same_everywhere() {
 fn contact_shares_as_the_social_force_does() {
     let bend = wall(&[p(-3.0, 1.0), p(0.0, 0.0), p(3.0, 1.0)]);
     let room = wall(&[p(10.0, 3.0), p(10.0, 0.0), p(13.0, 0.0)]);
-    let all = Surfaces::new(&[bend, room]);
+    let all = Surfaces::new(&[bend, room], |_| false);
     let touch = |faces: [u32; 2], place: Vec2| {
         let mut room = Room::default();
         let found = dispatch!(Level::new(), simd => {
@@ -429,7 +429,7 @@ proptest! {
         x in prop::array::uniform8(-1.0..3.0),
         y in prop::array::uniform8(-1.0..3.0),
     ) {
-        let all = Surfaces::new(&barriers);
+        let all = Surfaces::new(&barriers, |_| false);
         let at: [Vec2; 8] = std::array::from_fn(|lane| p(x[lane], y[lane]));
         let found = dispatch!(Level::new(), simd => forces(simd, &all, &at, 0.3));
         for lane in 0..8 {
