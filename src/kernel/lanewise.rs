@@ -11,7 +11,7 @@ use super::force::walls::{self, AtWalls, Surfaces};
 use super::force::{Forces, Room, with_pair_terms};
 use super::plane::{Open, Plane};
 use super::state::State;
-use super::vector::{Doubles, Part, larger, parts};
+use super::vector::{larger, parts};
 use crate::base::geometry::amply_around;
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -126,19 +126,18 @@ impl Lanewise {
         sums.resize(state.agents, Sum::default());
         contacts.clear();
         // A function for each combination of terms: several loops in one would share its registers badly.
-        let (closed, count) = state.doors.each(state.layout);
-        let closed = &closed[..count];
+        let (all, some) = ([(&forces.surfaces, Mask::ALL)], forces.by_doors(state));
+        let surfaces: &[_] = if some.is_empty() { &all } else { &some };
         with_pair_terms!(
             forces,
             term,
             plane,
             simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (term, plane), (forces, closed), sums, contacts),
+                || self.pairs(simd, (term, plane), (forces, surfaces), sums, contacts),
             )
         );
-        for &(set, there) in closed {
-            let surfaces = (forces.surfaces(set), there);
+        for &surfaces in surfaces {
             simd.vectorize(
                 #[inline(always)]
                 || self.walls(simd, (forces, surfaces), state, sums, contacts),
@@ -160,8 +159,8 @@ impl Lanewise {
         sums.clear();
         sums.resize(state.agents, Sum::default());
         let room = Room::of(state);
-        let (closed, count) = state.doors.each(state.layout);
-        let closed = &closed[..count];
+        let (all, some) = ([(&forces.surfaces, Mask::ALL)], forces.by_doors(state));
+        let surfaces: &[_] = if some.is_empty() { &all } else { &some };
         self.kept.resize(state.agents * Room::COUNT, Lanes::ZERO);
         for (index, kept) in self.kept.chunks_exact_mut(Room::COUNT).enumerate() {
             for part in parts(simd) {
@@ -177,11 +176,11 @@ impl Lanewise {
         match forces.closed {
             None => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (room, Open), (forces, closed), sums, contacts),
+                || self.pairs(simd, (room, Open), (forces, surfaces), sums, contacts),
             ),
             Some(plane) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs(simd, (room, plane), (forces, closed), sums, contacts),
+                || self.pairs(simd, (room, plane), (forces, surfaces), sums, contacts),
             ),
         }
     }
@@ -376,7 +375,7 @@ impl Lanewise {
         &self,
         simd: S,
         (term, plane): (T, P),
-        (forces, closed): (&Forces, &[(u32, Mask)]),
+        (forces, surfaces): (&Forces, &[(&Surfaces, Mask)]),
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
@@ -391,7 +390,7 @@ impl Lanewise {
             for i in 0..n {
                 let agent = &agents[i];
                 let (x, y, r) = (part.load(&agent.x), part.load(&agent.y), part.load(&agent.r));
-                let own = load::<S, T>(part, kept, i);
+                let own = T::of_agent(part, kept, i);
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
                 let mut slowness = part.load(&sums[i].slowness);
                 for at in first[i] as usize..first[i + 1] as usize {
@@ -415,10 +414,13 @@ impl Lanewise {
                         } else {
                             (part.load(&other.x), part.load(&other.y))
                         };
-                        let hidden = forces.hide(closed, screens, part, (x, y), there);
+                        let hidden = match surfaces {
+                            [(surfaces, _)] => surfaces.hide(screens, part, (x, y), there),
+                            _ => walls::hidden_by_doors(simd, surfaces, screens, part, (x, y), there),
+                        };
                         pair.gap = hidden.select(part.c(f64::NEG_INFINITY), pair.gap);
                     }
-                    let push = term.push(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
+                    let push = term.push(part, &pair, &own, &T::of_agent(part, kept, j as usize));
                     fx += push.one.0;
                     fy += push.one.1;
                     let sum = &mut sums[j as usize];
@@ -468,16 +470,6 @@ impl Lanewise {
             }
         }
     }
-}
-
-/// What a term keeps of an agent.
-#[inline(always)]
-fn load<S: Simd, T: PairTerm>(part: Part<S>, kept: &[Lanes], agent: usize) -> T::Of<Doubles<S>> {
-    let kept = &kept[agent * T::COUNT..][..T::COUNT];
-    T::load(
-        #[inline(always)]
-        |k| part.load(&kept[k]),
-    )
 }
 
 /// Puts what several images have listed from a place on into order, each once.

@@ -90,8 +90,9 @@ impl Contacts {
     /// Puts the candidates of the only trial into ascending order: they were found in an order that
     /// depends on the width of the machine's vectors.
     pub(super) fn arrange(&mut self) {
-        self.candidates[0].pairs.sort_unstable();
-        self.candidates[0].walls.sort_unstable();
+        let in_order = |&(a, b): &(u32, u32)| u64::from(a) << 32 | u64::from(b);
+        self.candidates[0].pairs.sort_unstable_by_key(in_order);
+        self.candidates[0].walls.sort_unstable_by_key(in_order);
     }
 
     /// Moves, over `h` seconds, all bodies that touch something or may be touched by someone who does,

@@ -16,13 +16,11 @@ pub(super) mod walls;
 use super::pace::fastest;
 use super::plane::Closed;
 use super::state::{Slot, State};
-use super::vector::{Doubles, Part, Truths};
 use crate::base::geometry::{Vec2, cross};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math::{at_least, atan2};
 use crate::model::{Agent, Barrier, Body, ByDoors, Group, Kind, Law, Parameter, Periods, Scenario};
 pub(super) use ahead::Ahead;
-use fearless_simd::Simd;
 pub(super) use pair::Both;
 use pair::Sum;
 use social::Particles;
@@ -207,21 +205,13 @@ impl Forces {
         if self.doors.is_empty() { &self.surfaces } else { self.surfaces_of(closed) }
     }
 
-    /// Where any of some faces is between two bodies; `closed` has sets of closed doors with their lanes.
-    #[inline(always)]
-    pub(super) fn hide<S: Simd>(
-        &self,
-        closed: &[(u32, Mask)],
-        faces: &[u32],
-        part: Part<S>,
-        place: (Doubles<S>, Doubles<S>),
-        other: (Doubles<S>, Doubles<S>),
-    ) -> Truths<S> {
-        let mut hidden = part.mask(Mask::NONE);
-        for &(set, lanes) in closed {
-            hidden |= self.surfaces(set).hide(faces, part, place, other) & part.mask(lanes);
+    /// Walls and obstacles for each set of closed doors of a batch, with its lanes; empty where no door may change.
+    pub(super) fn by_doors(&self, state: &State) -> Vec<(&Surfaces, Mask)> {
+        if self.doors.is_empty() {
+            return Vec::new();
         }
-        hidden
+        let (sets, count) = state.doors.each(state.layout);
+        sets[..count].iter().map(|&(set, lanes)| (self.surfaces_of(set), lanes)).collect()
     }
 
     #[cold]

@@ -116,6 +116,16 @@ pub(in crate::kernel) trait PairTerm: Copy {
     /// Puts together what `keep` has kept.
     fn load<T: Copy>(column: impl Fn(usize) -> T) -> Self::Of<T>;
 
+    /// The same from the lanes of one agent among those of all.
+    #[inline(always)]
+    fn of_agent<S: Simd>(part: Part<S>, kept: &[Lanes], agent: usize) -> Self::Of<Doubles<S>> {
+        let kept = &kept[agent * Self::COUNT..][..Self::COUNT];
+        Self::load(
+            #[inline(always)]
+            |k| part.load(&kept[k]),
+        )
+    }
+
     /// The same of each number.
     fn map<T: Copy, U: Copy>(of: &Self::Of<T>, f: impl Fn(T) -> U) -> Self::Of<U>;
 

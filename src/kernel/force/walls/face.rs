@@ -28,8 +28,6 @@ pub(super) enum Form {
     Disc,
     /// A whole barrier: a polygon, which pushes those who got into it.
     Inside,
-    /// A door that is open: it does nothing.
-    Open,
 }
 
 /// What a face hides others behind.
@@ -49,7 +47,7 @@ impl Screen {
                 Some(Self::Disc { centre: barrier.centre(), radius: half.x })
             }
             // Its edges hide who is inside.
-            Form::Inside | Form::Open => None,
+            Form::Inside => None,
         }
     }
 }
@@ -95,24 +93,16 @@ pub(in crate::kernel) struct NearestTo {
     pub(in crate::kernel) fades: bool,
 }
 
-impl<S: Simd> Nearest<S> {
-    /// Of a face that does nothing.
-    #[inline(always)]
-    pub(super) fn none(part: Part<S>) -> Self {
-        let (zero, far) = (part.c(0.0), part.c(f64::INFINITY));
-        Self { nx: zero, ny: zero, near: far, distance: far, fading: zero, fades: part.mask(Mask::NONE) }
-    }
-}
-
-impl NearestTo {
-    /// The same.
-    pub(super) const NONE: Self = Self {
-        normal: Vec2::new(0.0, 0.0),
-        near: f64::INFINITY,
-        distance: f64::INFINITY,
-        fading: 0.0,
-        fades: false,
-    };
+impl Form {
+    /// A piece beyond the reach of everybody: a door that is open.
+    pub(super) const FAR: Self = Self::Side(Side {
+        a: Vec2::new(1e100, 1e100),
+        along: Vec2::new(0.0, 0.0),
+        inverse_square: 0.0,
+        outward: Vec2::new(0.0, 0.0),
+        closed: [false; 2],
+        per_fade: 1.0,
+    });
 }
 
 impl Side {

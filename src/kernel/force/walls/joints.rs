@@ -94,7 +94,6 @@ pub(super) fn of_face(
                 }
                 overlap(&own.bounds, &other.bounds)
             }
-            (Form::Open, _) | (_, Form::Open) => None,
             (Form::Disc | Form::Inside, _) => overlap(&own.bounds, &other.bounds),
         };
         joints.extend(around.map(|around| Joint { other: k, around, in_line: is_in_line }));

@@ -43,6 +43,7 @@ use face::{
 };
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+pub(in crate::kernel) use screen::hidden_by_doors;
 use sharing::{Push, share};
 use std::f64::consts::LOG2_E;
 use std::sync::Arc;
@@ -145,7 +146,7 @@ pub(in crate::kernel) struct Room {
 }
 
 impl Surfaces {
-    /// Of a scene. A barrier that `is_open` has its faces, but these do nothing.
+    /// Of a scene. A barrier that `is_open` has its faces, but these are far away.
     pub(in crate::kernel) fn new(barriers: &[Barrier], is_open: impl Fn(usize) -> bool) -> Self {
         let number = |(k, barrier)| Some(((k, barrier), Surface::new(barrier)?));
         let (barriers, wholes): (Vec<(usize, &Barrier)>, Vec<Surface>) =
@@ -153,7 +154,7 @@ impl Surfaces {
         let mut faces = Vec::new();
         for (k, &(number, barrier)) in barriers.iter().enumerate() {
             let is_open = is_open(number);
-            let felt = |(form, bounds)| (if is_open { Form::Open } else { form }, bounds);
+            let felt = |(form, bounds)| (if is_open { Form::FAR } else { form }, bounds);
             faces.extend(forms(barrier, &wholes[k]).into_iter().map(felt).map(|(form, bounds)| Face {
                 screen: Screen::new(&form, &wholes[k]),
                 form,
@@ -217,7 +218,6 @@ impl Surfaces {
         match form {
             Form::Side(side) => side.nearest(part, x, y),
             Form::Disc | Form::Inside => nearest_of_whole(&self.wholes[*barrier as usize], part, x, y),
-            Form::Open => Nearest::none(part),
         }
     }
 
@@ -227,7 +227,6 @@ impl Surfaces {
         match form {
             Form::Side(side) => side.nearest_to(p),
             Form::Disc | Form::Inside => nearest_of_whole_to(&self.wholes[*barrier as usize], p),
-            Form::Open => NearestTo::NONE,
         }
     }
 
@@ -239,7 +238,7 @@ impl Surfaces {
             Form::Side(side) => side.meets(from, to)?,
             Form::Disc => meets_disc(&self.wholes[*barrier as usize], from, to)?,
             // Its edges stop those who are outside.
-            Form::Inside | Form::Open => return None,
+            Form::Inside => return None,
         };
         let left = 1.0 - ON / height;
         Some((from + (to - from) * if left > 0.0 { share * left } else { 0.0 }, normal))

@@ -10,6 +10,7 @@
 use super::Surfaces;
 use super::face::Screen;
 use crate::base::geometry::{Bounds, Vec2, cross};
+use crate::base::lanes::Mask;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -102,7 +103,7 @@ impl Surfaces {
                 let (mx, my) = (cx - dx * share, cy - dy * share);
                 (mx * mx + my * my).simd_lt(part.c(radius * radius))
             }
-            None => part.mask(crate::base::lanes::Mask::NONE),
+            None => part.mask(Mask::NONE),
         }
     }
 
@@ -115,10 +116,33 @@ impl Surfaces {
         place: (Doubles<S>, Doubles<S>),
         other: (Doubles<S>, Doubles<S>),
     ) -> Truths<S> {
-        let mut hidden = part.mask(crate::base::lanes::Mask::NONE);
+        let mut hidden = part.mask(Mask::NONE);
         for &face in faces {
             hidden |= self.hides(face, part, place, other);
         }
         hidden
     }
+}
+
+/// Where faces hide two bodies from each other in lanes with different doors closed.
+#[cold]
+#[inline(never)]
+pub(in crate::kernel) fn hidden_by_doors<S: Simd>(
+    simd: S,
+    surfaces: &[(&Surfaces, Mask)],
+    screens: &[u32],
+    part: Part<S>,
+    place: (Doubles<S>, Doubles<S>),
+    other: (Doubles<S>, Doubles<S>),
+) -> Truths<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let each = surfaces.iter();
+            let hide = |(surfaces, lanes): &(&Surfaces, Mask)| {
+                surfaces.hide(screens, part, place, other) & part.mask(*lanes)
+            };
+            each.map(hide).fold(part.mask(Mask::NONE), |all, one| all | one)
+        },
+    )
 }

@@ -92,7 +92,7 @@ impl Surfaces {
         let Face { form, bounds, .. } = &self.faces[face as usize];
         match form {
             Form::Side(side) => side.piece().distance(p),
-            Form::Disc | Form::Inside | Form::Open => bounds.distance(p),
+            Form::Disc | Form::Inside => bounds.distance(p),
         }
     }
 }
