@@ -90,8 +90,12 @@ fn scene(scenario: &Scenario) -> String {
             let _ = writeln!(out, "  periodic {axis}: {} .. {} m", number(period.low), number(period.high()));
         }
     }
-    for barrier in &scenario.scene.barriers {
+    for (k, barrier) in scenario.scene.barriers.iter().enumerate() {
         let name = if barrier.name.is_empty() { String::new() } else { format!(" {}", barrier.name) };
+        if scene.doors.iter().any(|door| door.0 as usize == k) {
+            let _ = writeln!(out, "  door{name}: opens or closes during a trial");
+            continue;
+        }
         let _ = match &barrier.obstacle {
             Obstacle::Wall(segments) => {
                 let length = number(segments.iter().map(Segment::length).sum());
