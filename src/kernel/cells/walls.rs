@@ -19,7 +19,7 @@ use std::ops::Range;
 /// The faces that can stand between two agents.
 #[derive(Clone, Debug, Default)]
 struct Dividing {
-    /// Between any two in here; `None` before the first look.
+    /// Between any two in here; `None` before the first look at a scene.
     around: Option<Bounds>,
     is: Vec<bool>,
     room: Vec<u32>,
@@ -29,7 +29,7 @@ impl Dividing {
     /// Looks again if agents have left the rectangle of the last look.
     fn look(&mut self, surfaces: &Surfaces, all: &Bounds) {
         let holds = |old: &Bounds| old.low.inf(&all.low) == old.low && old.high.sup(&all.high) == old.high;
-        if self.is.len() == surfaces.len() && self.around.as_ref().is_some_and(holds) {
+        if self.around.as_ref().is_some_and(holds) {
             return;
         }
         let more = Vec2::repeat(0.5);
@@ -118,8 +118,10 @@ impl Cells {
             return;
         }
         let beyond = if self.images.start.is_empty() { 0.0 } else { reach.most };
+        if walls.tiles.prepare(&forces.surfaces, reach.most) {
+            walls.dividing.around = None;
+        }
         walls.dividing.look(&forces.surfaces, &reach.extent.around(beyond));
-        walls.tiles.prepare(&forces.surfaces, reach.most);
         walls.sort(&self.index);
         walls.screens_of.resize(self.index.agent.len(), (0, 0));
         let mut from = 0;

@@ -40,19 +40,19 @@ pub(in crate::kernel) struct Tiles {
 }
 
 impl Tiles {
-    /// Makes the lists for the faces of a scene, all that are nearer than `reach`, unless they are there.
-    pub(in crate::kernel) fn prepare(&mut self, surfaces: &Surfaces, reach: f64) {
+    /// Makes the lists for the faces of a scene, all that are nearer than `reach`; false if they are there already.
+    pub(in crate::kernel) fn prepare(&mut self, surfaces: &Surfaces, reach: f64) -> bool {
         let serves = |(mark, made): &(Arc<()>, f64)| {
             Arc::ptr_eq(mark, &surfaces.mark) && reach <= *made && *made <= 2.0 * reach
         };
         if self.of.as_ref().is_some_and(serves) {
-            return;
+            return false;
         }
         // A little more, as the next trial may have a larger body.
         let reach = 1.05 * reach;
         *self = Self { of: Some((surfaces.mark.clone(), reach)), lists: vec![Vec::new()], ..Self::default() };
         let corners = surfaces.faces.iter().flat_map(|face| [face.bounds.low, face.bounds.high]);
-        let Some(all) = Bounds::around(corners).filter(|_| reach.is_finite()) else { return };
+        let Some(all) = Bounds::around(corners).filter(|_| reach.is_finite()) else { return true };
         self.low = all.low - Vec2::repeat(reach);
         let size = all.high - all.low + Vec2::repeat(2.0 * reach);
         let least = (size.x * size.y / MOST).sqrt();
@@ -75,6 +75,7 @@ impl Tiles {
                 self.list_of.push(list);
             }
         }
+        true
     }
 
     /// The list of the faces in reach of a place; 0 where there are none.
