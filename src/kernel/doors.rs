@@ -35,13 +35,6 @@ pub struct Doors {
     dt: f64,
 }
 
-/// Room to work. It holds no part of the state.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
-    readings: Readings,
-    changed: Mask,
-}
-
 impl Doors {
     /// Those of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
@@ -107,20 +100,19 @@ impl Doors {
     }
 
     /// Looks at the state before a step.
-    pub(super) fn watch(&self, layout: Layout, state: &State, scratch: &mut Scratch) {
+    pub(super) fn watch(&self, layout: Layout, state: &State, readings: &mut Readings) {
         if let Some(code) = &self.code {
-            code.read(layout, state, &mut scratch.readings);
+            code.read(layout, state, readings);
         }
     }
 
     /// Opens and closes doors in the state after a step, whose positions and ticks are in the state.
-    pub(super) fn turn(&self, drive: &Drive, state: &mut State, scratch: &mut Scratch) {
-        scratch.changed = Mask::NONE;
+    pub(super) fn turn(&self, drive: &Drive, state: &mut State, readings: &Readings) {
         for lane in if self.is_empty() { Mask::NONE } else { state.occupied & !state.faulty }.iter() {
             let (tick, before) = (state.ticks[lane] as f64, state.doors.sets[lane]);
             let mut set = before;
             for (door, leaf) in self.leaves.iter().enumerate() {
-                let (is_shut, bit) = (self.shuts(door, state, lane, tick, &scratch.readings), 1 << door);
+                let (is_shut, bit) = (self.shuts(door, state, lane, tick, readings), 1 << door);
                 if !is_shut {
                     set &= !bit;
                 } else if set & bit == 0 && !leaf.is_occupied(state, lane) {
@@ -129,11 +121,8 @@ impl Doors {
             }
             if set != before {
                 state.doors.sets[lane] = set;
-                scratch.changed |= Mask::lane(lane);
+                driver::look_for_ways(drive, state, lane);
             }
-        }
-        for lane in scratch.changed.iter() {
-            driver::look_for_ways(drive, state, lane);
         }
     }
 }

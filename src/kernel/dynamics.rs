@@ -28,9 +28,9 @@
 
 use super::behaviour;
 use super::cells::Cells;
+use super::code::Readings;
 use super::composure;
 use super::contact::Contacts;
-use super::doors;
 use super::driver;
 use super::force::pair::Sum;
 use super::lanewise::Lanewise;
@@ -72,7 +72,7 @@ pub struct Scratch {
     moved: Vec<Mask>,
     processes: process::Scratch,
     behaviours: behaviour::Scratch,
-    doors: doors::Scratch,
+    doors: Readings,
 }
 
 impl Default for Scratch {
@@ -99,7 +99,7 @@ impl Scratch {
             moved: Vec::new(),
             processes: process::Scratch::default(),
             behaviours: behaviour::Scratch::default(),
-            doors: doors::Scratch::default(),
+            doors: Readings::default(),
         }
     }
 
@@ -143,23 +143,19 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     program.doors.watch(program.layout, state, &mut scratch.doors);
     program.processes.step(program.layout, state, &mut scratch.processes);
     if state.agents == 0 {
-        for (lane, tick) in state.ticks.iter_mut().enumerate() {
-            *tick += u64::from(state.occupied.has(lane));
-        }
+        state.go_on();
         return;
     }
     dispatch!(scratch.level, simd => move_on(simd, program, state, scratch));
     if !program.forces.periods.are_none() {
         state.wrap(&program.forces.periods, &scratch.moving);
     }
-    for lane in state.occupied.iter() {
-        state.ticks[lane] += 1;
-    }
+    state.go_on();
     driver::arrive(state, &scratch.moving);
     if program.behaviours.turn((&program.drive, &program.parameters), state, &scratch.behaviours) {
         scratch.lanewise.forget();
     }
-    program.doors.turn(&program.drive, state, &mut scratch.doors);
+    program.doors.turn(&program.drive, state, &scratch.doors);
     driver::steer_at(scratch.level, &program.drive, state);
     if !program.passing.is_empty() {
         let from = (scratch.seen_x.as_slice(), scratch.seen_y.as_slice());

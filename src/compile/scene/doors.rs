@@ -145,7 +145,7 @@ pub(crate) fn check(context: &mut Context<'_>, doors: &[Door], agents: &[Agent])
     if let (Some(door), Some(agent)) = (changing, agents.iter().find(is_led)) {
         let (door, agent) = (&door.name, &agent.name);
         let error = error!(E0408, door.span, "the door `{}` changes during a trial, and `{agent}` plans or steps", door.name;
-            hint: "give the people a kind without `walk`, or close the door for whole trials");
+            hint: "make `{agent}` an agent of `sfm` or `cfs`, or close the door for whole trials: `closed = shut == 1`");
         context.note(error);
     }
 }

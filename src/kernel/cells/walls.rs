@@ -160,6 +160,7 @@ impl Cells {
         let places: [usize; LANES] = std::array::from_fn(|lane| few[lane.min(few.len() - 1)] as usize);
         let agents = places.map(|at| index.agent[at]);
         let there = Mask((0xff_u32 >> (LANES - few.len())) as u8);
+        let surfaces = forces.surfaces(state.doors.sets[0]);
         let (mut fx, mut fy) = (Lanes::ZERO, Lanes::ZERO);
         for part in parts(simd) {
             let of = |field: &[f64]| {
@@ -175,7 +176,6 @@ impl Cells {
                     contacts.push_wall(agents[lane], face, Mask::lane(0));
                 }
             };
-            let surfaces = forces.surfaces(state.doors.sets[0]);
             let (x, y) = surfaces.push(part, faces, &at, forces.margin, room, touching);
             part.store(x, &mut fx);
             part.store(y, &mut fy);

@@ -138,6 +138,13 @@ impl State {
         }
     }
 
+    /// The next tick of all trials.
+    pub(super) fn go_on(&mut self) {
+        for lane in self.occupied.iter() {
+            self.ticks[lane] += 1;
+        }
+    }
+
     /// The doors that are closed in the trial of a slot in a lane: bit k is the k-th that may change.
     #[inline(always)]
     pub fn closed_doors(&self, lane: usize) -> u32 {
