@@ -267,7 +267,7 @@ pub(crate) fn bits_of(state: &State, lane: usize) -> Vec<u64> {
         &state.driving.ex,
         &state.driving.ey,
         &state.driving.speed,
-        &state.driving.slowness,
+        &state.motion.slowness,
         &state.driving.rest_x,
         &state.driving.rest_y,
         &state.motion.travelled,

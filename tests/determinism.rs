@@ -2,13 +2,17 @@
 //! order in which trials end, and trials that are run a second time.
 
 use crate::texts::compiled;
+use smc::base::random::TrialKey;
 use smc::compile::Study;
 use smc::compile::study::Query;
 use smc::engine::outcome::{CallResult, Failure, QueryResult};
 use smc::engine::trials::executor::{Cells, Job};
 use smc::engine::{Budget, Call, CommandLine, Executor, Nobody, Threads, run};
+use smc::kernel::{Program, Run};
 use smc::logic::Invalid;
 use smc::trials::cell::Item;
+use smc::{Model, Options};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -250,4 +254,63 @@ fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
         assert_eq!(sides * trials, result.consumed.counts.trials + paths, "{query}: {}", result.replay);
         assert!(result.low <= result.estimate.unwrap() && result.estimate.unwrap() <= result.high, "{query}");
     }
+}
+
+/// A hall of 2 400 people with walls in it, who walk both ways.
+fn large(kind: &str) -> Model {
+    let text = format!(
+        "horizon = 2 s\nstep = 0.05 s
+        scene {{
+          wall (-1, -1) -- (61, -1)
+          wall (20, 5) -- (20, 25)
+          obstacle rect (38, 8) .. (41, 20)
+          region east: rect (70, 10) .. (72, 12)
+          region west: rect (-12, 10) .. (-10, 12)
+        }}
+        {kind}
+        agents right[1200]: person {{ at = uniform in rect (0, 0) .. (29, 28); route = east }}
+        agents left[1200]: person {{ at = uniform in rect (30, 0) .. (60, 28); route = west }}"
+    );
+    Model::parse(&text).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+#[test]
+fn threads_that_share_a_crowd_change_no_bit_of_it() {
+    for preset in ["smc1", "smc2", "helbing2000"] {
+        states_are_the_same(&large(&format!("kind person: sfm preset {preset}")));
+    }
+    states_are_the_same(&large("kind person: cfs preset cfs2"));
+}
+
+fn states_are_the_same(model: &Model) {
+    let program = Program::new(Arc::clone(model.scenario()));
+    assert!(program.is_large());
+    let last = |threads: usize| {
+        let go = || {
+            let mut run = Run::of(&program, TrialKey::default().into()).unwrap().0;
+            run.share(threads);
+            while run.next_state().is_ok() {}
+            run.state().clone()
+        };
+        Threads::new(Some(threads)).unwrap().helped(go).unwrap()
+    };
+    let alone = last(1);
+    assert_eq!(alone.ticks[0], 40);
+    for threads in [2, 3, 7] {
+        assert!(last(threads) == alone, "{threads} threads change a state");
+    }
+}
+
+#[test]
+fn a_trial_of_a_large_crowd_has_the_same_value_at_any_number_of_threads() {
+    let model = large("kind person: sfm preset smc2");
+    let values = |threads| {
+        let query = "estimate E(max(speed(a) for a in right) at 2 s) in 0 m/s .. 9 m/s by fixed(trials = 3)";
+        let report = model.check(query, &Options::default().threads(threads)).unwrap();
+        report.results()[0].estimate.map(f64::to_bits)
+    };
+    let alone = values(1);
+    assert!(alone.is_some());
+    // With four threads one helps; with seven three trials have two each.
+    assert_eq!([2, 4, 7].map(values), [alone; 3]);
 }

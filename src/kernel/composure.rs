@@ -9,7 +9,7 @@
 //!
 //! and the noise of who is held up is v/v0 times as strong.
 
-use super::state::State;
+use super::state::Still;
 use super::vector::{Doubles, Part, larger};
 use crate::model::Parameter;
 use fearless_simd::Simd;
@@ -19,14 +19,14 @@ use fearless_simd::prelude::*;
 #[inline(always)]
 pub(super) fn followed<S: Simd>(
     part: Part<S>,
-    state: &State,
+    still: &Still<'_>,
     block: usize,
     (x, y): (Doubles<S>, Doubles<S>),
     slowness: Doubles<S>,
 ) -> (Doubles<S>, Doubles<S>) {
-    let (ex, ey) = (part.load(&state.driving.ex[block]), part.load(&state.driving.ey[block]));
-    let speed = part.load(&state.driving.speed[block]);
-    let body = |parameter| part.load(&state.bodies[parameter][block]);
+    let (ex, ey) = (part.load(&still.driving.ex[block]), part.load(&still.driving.ey[block]));
+    let speed = part.load(&still.driving.speed[block]);
+    let body = |parameter| part.load(&still.bodies[parameter][block]);
     // The force that makes up for what the headway takes from the driving force.
     let most = body(Parameter::Mass) / body(Parameter::Tau) * (speed - allowed(part, speed, slowness));
     let beyond = larger::<S>(x * ex + y * ey - most, part.c(0.0)) * body(Parameter::Composure);
@@ -44,11 +44,11 @@ pub(super) fn allowed<S: Simd>(part: Part<S>, speed: Doubles<S>, slowness: Doubl
 #[inline(always)]
 pub(super) fn liveliness<S: Simd>(
     part: Part<S>,
-    state: &State,
+    still: &Still<'_>,
     block: usize,
     (speed, left): (Doubles<S>, Doubles<S>),
 ) -> Doubles<S> {
     let one = part.c(1.0);
     let held = speed.simd_gt(part.c(0.0)).select(one - left / speed, one);
-    one - part.load(&state.bodies[Parameter::Composure][block]) * held
+    one - part.load(&still.bodies[Parameter::Composure][block]) * held
 }

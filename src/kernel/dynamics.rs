@@ -34,17 +34,16 @@ use super::contact::Contacts;
 use super::driver;
 use super::force::pair::Sum;
 use super::lanewise::Lanewise;
+use super::mover::{Mover, kicked, travel};
 use super::near::Close;
-use super::noise::{Draws, word_of};
 use super::process;
-use super::program::Program;
-use super::rest::{back, rest};
+use super::program::{LARGE, Program};
+use super::rest::rest;
 use super::speed;
 use super::start;
-use super::state::{Layout, Slot, State};
-use super::vector::{Doubles, Part, Words, parts};
+use super::state::{Layout, Moves, Slot, State, Still};
+use super::vector::{Part, Truths, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::base::math::exp;
 use crate::base::random::TrialKey;
 use crate::model::TOP_SPEED;
 use fearless_simd::prelude::*;
@@ -55,6 +54,8 @@ use fearless_simd::{Level, Simd, dispatch};
 #[derive(Clone, Debug)]
 pub struct Scratch {
     level: Level,
+    /// How many threads may share one large crowd.
+    threads: usize,
     pub(super) lanewise: Lanewise,
     pub(super) cells: Cells,
     pub(super) contacts: Contacts,
@@ -87,6 +88,7 @@ impl Scratch {
     pub fn at_level(level: Level) -> Self {
         Self {
             level,
+            threads: 1,
             lanewise: Lanewise::default(),
             cells: Cells::default(),
             contacts: Contacts::default(),
@@ -101,6 +103,16 @@ impl Scratch {
             behaviours: behaviour::Scratch::default(),
             doors: Readings::default(),
         }
+    }
+
+    /// So many threads of the pool of the calling one share a crowd that is large enough. Results have the same bits.
+    pub fn share(&mut self, threads: usize) {
+        self.threads = threads;
+    }
+
+    /// How many of them share a state.
+    fn threads_of(&self, state: &State) -> usize {
+        if state.layout == Layout::Agents && state.agents > LARGE { self.threads } else { 1 }
     }
 
     /// Who may touch whom in a state of one large crowd, if that is the one that `refresh` or `step` left, and all places
@@ -133,7 +145,7 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
         find_forces(simd, program, state, scratch);
         let slots = state.layout.slots_of(lanes);
         keep_forces(simd, program, state, scratch, slots);
-        speed::set(simd, program, state, scratch, slots);
+        set_speeds(simd, program, state, scratch, slots);
     });
 }
 
@@ -194,10 +206,11 @@ pub fn renew(
 
 #[inline(always)]
 fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut Scratch) {
+    let threads = scratch.threads_of(state);
     let Scratch { lanewise, cells, contacts, sums, seen_x, seen_y, seen, .. } = scratch;
     match state.layout {
         Layout::Trials => lanewise.forces(simd, &program.forces, state, sums, contacts),
-        Layout::Agents => cells.forces(simd, &program.forces, state, sums, contacts),
+        Layout::Agents => cells.forces(simd, (&program.forces, threads), state, sums, contacts),
     }
     seen_x.clone_from(&state.motion.x);
     seen_y.clone_from(&state.motion.y);
@@ -206,19 +219,38 @@ fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut
 
 #[inline(always)]
 fn keep_forces<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &Scratch, lanes: Mask) {
-    for (block, sum) in scratch.sums.iter().enumerate() {
-        for part in parts(simd) {
-            let here = part.mask(state.present[block] & lanes);
-            let mut force = (part.load(&sum.x), part.load(&sum.y));
-            let slowness = part.load(&sum.slowness);
-            if program.forces.manners {
-                force = composure::followed(part, state, block, force, slowness);
+    state.each(
+        simd,
+        1,
+        #[inline(always)]
+        |still, block, mut moves| {
+            for part in parts(simd) {
+                let here = part.mask(still.present[block] & lanes);
+                keep(part, program, still, block, &mut moves, (here, &scratch.sums[block]));
             }
-            part.store_in(here, force.0, &mut state.motion.fx[block]);
-            part.store_in(here, force.1, &mut state.motion.fy[block]);
-            part.store_in(here, slowness, &mut state.driving.slowness[block]);
-        }
+            Mask::NONE
+        },
+    );
+}
+
+/// Keeps the forces that were found on some slots of a block.
+#[inline(always)]
+fn keep<S: Simd>(
+    part: Part<S>,
+    program: &Program,
+    still: &Still<'_>,
+    block: usize,
+    moves: &mut Moves<'_>,
+    (here, sum): (Truths<S>, &Sum),
+) {
+    let mut force = (part.load(&sum.x), part.load(&sum.y));
+    let slowness = part.load(&sum.slowness);
+    if program.forces.manners {
+        force = composure::followed(part, still, block, force, slowness);
     }
+    part.store_in(here, force.0, moves.fx);
+    part.store_in(here, force.1, moves.fy);
+    part.store_in(here, slowness, moves.slowness);
 }
 
 /// Kick, drift, driving and noise, drift.
@@ -238,260 +270,134 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
             rest(part, state, block, moving);
         }
     }
-    let mover = Mover {
-        program,
-        draws: Draws::at(state),
-        half: 0.5 * program.dt,
-        forgets: exp(-program.dt / speed::FORGETS),
-    };
-    if scratch.contacts.is_empty() {
-        for (block, &moving) in scratch.moving.iter().enumerate() {
-            if !moving.is_empty() {
-                let words = mover.words(state, block);
-                for part in parts(simd) {
-                    mover.whole(part, state, block, moving, &words);
+    let threads = scratch.threads_of(state);
+    let mover = Mover::at(program, state);
+    let Scratch { contacts, moving, moved, seen_x, seen_y, .. } = scratch;
+    let moving = moving.as_slice();
+    if contacts.is_empty() {
+        state.each(
+            simd,
+            threads,
+            #[inline(always)]
+            |still, block, mut moves| {
+                if !moving[block].is_empty() {
+                    let words = mover.words(still, block);
+                    for part in parts(simd) {
+                        mover.whole(part, still, block, &mut moves, (moving[block], &words));
+                    }
                 }
-            }
-        }
+                Mask::NONE
+            },
+        );
         return;
     }
-    for (block, &moving) in scratch.moving.iter().enumerate() {
-        for part in parts(simd) {
-            kick(part, state, block, moving);
-        }
-    }
-    mover.contact(simd, state, scratch);
-    for (block, &moving) in scratch.moving.iter().enumerate() {
-        let words = mover.words(state, block);
-        for part in parts(simd) {
-            mover.drift_and_drive(part, state, block, (moving, scratch.moved[block]), &words);
-        }
-    }
-    mover.contact(simd, state, scratch);
-    for (block, &moving) in scratch.moving.iter().enumerate() {
-        let start = (&scratch.seen_x[block], &scratch.seen_y[block]);
-        for part in parts(simd) {
-            mover.drift_and_measure(part, state, block, (moving, scratch.moved[block]), start);
-        }
-    }
-}
-
-/// The parts of a step, for one part of one block of slots each.
-struct Mover<'a> {
-    program: &'a Program,
-    draws: Draws,
-    /// Half a step, s.
-    half: f64,
-    /// Share of the noise that is left after a step in the collision-free speed model.
-    forgets: f64,
-}
-
-impl Mover<'_> {
-    /// Counter words of the agents of a block.
-    #[inline(always)]
-    fn words(&self, state: &State, block: usize) -> [u64; LANES] {
-        let words = &self.program.noise.words;
-        if !state.queues.reused.is_empty() {
-            return self.words_of_later(state, block);
-        }
-        match state.layout {
-            Layout::Trials => [u64::from(words[block]); LANES],
-            Layout::Agents => {
-                let own = &words[block * LANES..];
-                let mut out = [0; LANES];
-                for (out, &word) in out.iter_mut().zip(own) {
-                    *out = u64::from(word);
-                }
-                out
+    state.each(
+        simd,
+        threads,
+        #[inline(always)]
+        |still, block, moves| {
+            for part in parts(simd) {
+                let here = part.mask(moving[block]);
+                let (vx, vy) = kicked(part, still, block, &moves);
+                part.store_in(here, vx, moves.vx);
+                part.store_in(here, vy, moves.vy);
             }
-        }
-    }
-
-    /// The same where some places of sources are used by later people.
-    #[cold]
-    fn words_of_later(&self, state: &State, block: usize) -> [u64; LANES] {
-        let agents = &self.program.scenario.agents;
-        std::array::from_fn(|k| {
-            let (agent, lane) = match state.layout {
-                Layout::Trials => (block, k),
-                Layout::Agents => (block * LANES + k, 0),
-            };
-            let entity = agents.get(agent).map_or(0, |known| known.entity + state.queues.later(agent, lane));
-            u64::from(word_of(entity))
-        })
-    }
-
-    /// Driving and noise over the whole step.
-    #[inline(always)]
-    fn driven<S: Simd>(
-        &self,
-        part: Part<S>,
-        state: &State,
-        block: usize,
-        words: Words<S>,
-        place: (Doubles<S>, Doubles<S>),
-        (vx, vy): (Doubles<S>, Doubles<S>),
-    ) -> (Doubles<S>, Doubles<S>) {
-        let (decay, speed) = (part.load(&state.bodies.decay[block]), part.load(&state.driving.speed[block]));
-        let mut drive = speed;
-        if self.program.forces.ahead.is_some() {
-            drive = composure::allowed(part, speed, part.load(&state.driving.slowness[block]));
-        }
-        let (mut wish_x, mut wish_y) =
-            (drive * part.load(&state.driving.ex[block]), drive * part.load(&state.driving.ey[block]));
-        // Who moves by themselves (decay 1) has no place to hold.
-        let stands = speed.simd_eq(part.c(0.0)) & decay.simd_lt(part.c(1.0));
-        if stands.any_true() {
-            let (back_x, back_y) = back(part, state, block, place, (vx, vy));
-            (wish_x, wish_y) = (stands.select(back_x, wish_x), stands.select(back_y, wish_y));
-        }
-        let v = (vx, vy);
-        let (mut vx, mut vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
-        if self.program.forces.speeds.is_some() {
-            (vx, vy) = speed::with_noise(part, state, block, (v, (vx, vy)), self.forgets);
-        }
-        if !self.program.noise.present {
-            return (vx, vy);
-        }
-        let (nx, ny) = self.draws.normals(part, words);
-        let mut kick = part.load(&state.bodies.kick[block]);
-        if self.program.forces.manners {
-            kick *= composure::liveliness(part, state, block, (speed, drive));
-        }
-        (vx + kick * nx, vy + kick * ny)
-    }
-
-    /// All of it for a block without contact.
-    #[inline(always)]
-    fn whole<S: Simd>(
-        &self,
-        part: Part<S>,
-        state: &mut State,
-        block: usize,
-        moving: Mask,
-        words: &[u64; LANES],
-    ) {
-        let here = part.mask(moving);
-        let half = part.c(self.half);
-        let (vx, vy) = kicked(part, state, block);
-        let (x0, y0) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
-        let (x, y) = (x0 + vx * half, y0 + vy * half);
-        let (vx, vy) = self.driven(part, state, block, part.words(words), (x, y), (vx, vy));
-        let (x, y) = (x + vx * half, y + vy * half);
-        travel(part, state, block, moving, (x - x0, y - y0));
-        part.store_in(here, x, &mut state.motion.x[block]);
-        part.store_in(here, y, &mut state.motion.y[block]);
-        part.store_in(here, vx, &mut state.motion.vx[block]);
-        part.store_in(here, vy, &mut state.motion.vy[block]);
-    }
-
-    #[inline(always)]
-    fn contact<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch) {
-        let Scratch { contacts, moved, .. } = scratch;
-        moved.clear();
-        moved.resize(state.motion.x.len(), Mask::NONE);
-        simd.vectorize(
-            #[inline(always)]
-            || contacts.advance(simd, &self.program.forces, state, moved, self.half),
-        );
-    }
-
-    #[inline(always)]
-    fn drift<S: Simd>(&self, part: Part<S>, state: &mut State, block: usize, free: Mask) {
-        let (free, half) = (part.mask(free), part.c(self.half));
-        let x = part.load(&state.motion.x[block]) + part.load(&state.motion.vx[block]) * half;
-        let y = part.load(&state.motion.y[block]) + part.load(&state.motion.vy[block]) * half;
-        part.store_in(free, x, &mut state.motion.x[block]);
-        part.store_in(free, y, &mut state.motion.y[block]);
-    }
-
-    #[inline(always)]
-    fn drift_and_drive<S: Simd>(
-        &self,
-        part: Part<S>,
-        state: &mut State,
-        block: usize,
-        (moving, moved): (Mask, Mask),
-        words: &[u64; LANES],
-    ) {
-        self.drift(part, state, block, moving & !moved);
-        let v = (part.load(&state.motion.vx[block]), part.load(&state.motion.vy[block]));
-        let place = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
-        let (vx, vy) = self.driven(part, state, block, part.words(words), place, v);
-        part.store_in(part.mask(moving), vx, &mut state.motion.vx[block]);
-        part.store_in(part.mask(moving), vy, &mut state.motion.vy[block]);
-    }
-
-    #[inline(always)]
-    fn drift_and_measure<S: Simd>(
-        &self,
-        part: Part<S>,
-        state: &mut State,
-        block: usize,
-        (moving, moved): (Mask, Mask),
-        (x0, y0): (&Lanes, &Lanes),
-    ) {
-        self.drift(part, state, block, moving & !moved);
-        let dx = part.load(&state.motion.x[block]) - part.load(x0);
-        let dy = part.load(&state.motion.y[block]) - part.load(y0);
-        travel(part, state, block, moving, (dx, dy));
-    }
+            Mask::NONE
+        },
+    );
+    mover.contact(simd, state, contacts, moved);
+    state.each(
+        simd,
+        threads,
+        #[inline(always)]
+        |still, block, mut moves| {
+            let words = mover.words(still, block);
+            let free = moving[block] & !moved[block];
+            for part in parts(simd) {
+                mover.drift_and_drive(part, still, block, &mut moves, (moving[block], free, &words));
+            }
+            Mask::NONE
+        },
+    );
+    mover.contact(simd, state, contacts, moved);
+    state.each(
+        simd,
+        threads,
+        #[inline(always)]
+        |_, block, mut moves| {
+            let free = moving[block] & !moved[block];
+            for part in parts(simd) {
+                mover.drift(part, &mut moves, free);
+                let dx = part.load(moves.x) - part.load(&seen_x[block]);
+                let dy = part.load(moves.y) - part.load(&seen_y[block]);
+                travel(part, &mut moves, moving[block], (dx, dy));
+            }
+            Mask::NONE
+        },
+    );
 }
 
-/// Velocities after half a kick.
+/// Gives the agents in some lanes the velocities that follow from the places and directions of a state, whose sums of turns
+/// were kept as its forces.
 #[inline(always)]
-fn kicked<S: Simd>(part: Part<S>, state: &State, block: usize) -> (Doubles<S>, Doubles<S>) {
-    let push = part.load(&state.bodies.push[block]);
-    (
-        part.load(&state.motion.vx[block]) + part.load(&state.motion.fx[block]) * push,
-        part.load(&state.motion.vy[block]) + part.load(&state.motion.fy[block]) * push,
-    )
+fn set_speeds<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+    if program.forces.speeds.is_none() {
+        return;
+    }
+    for block in 0..state.motion.x.len() {
+        for part in parts(simd) {
+            speed::turn(part, state, block, lanes);
+        }
+    }
+    let Scratch { lanewise, cells, rooms, contacts, .. } = scratch;
+    match state.layout {
+        Layout::Trials => lanewise.rooms(simd, &program.forces, state, rooms, contacts),
+        Layout::Agents => cells.rooms(simd, &program.forces, state, rooms),
+    }
+    for block in 0..state.motion.x.len() {
+        for part in parts(simd) {
+            speed::go(part, state, block, lanes, &rooms[block]);
+        }
+    }
 }
 
-/// Half a kick.
-#[inline(always)]
-fn kick<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
-    let (vx, vy) = kicked(part, state, block);
-    part.store_in(part.mask(moving), vx, &mut state.motion.vx[block]);
-    part.store_in(part.mask(moving), vy, &mut state.motion.vy[block]);
-}
-
-/// Adds to the ways gone.
-#[inline(always)]
-fn travel<S: Simd>(
-    part: Part<S>,
-    state: &mut State,
-    block: usize,
-    moving: Mask,
-    (dx, dy): (Doubles<S>, Doubles<S>),
-) {
-    let way = part.load(&state.motion.travelled[block]) + (dx * dx + dy * dy).sqrt();
-    part.store_in(part.mask(moving), way, &mut state.motion.travelled[block]);
-}
-
-/// The slow force at the new positions, half a kick by it, and a look at what came out.
+/// The slow force at the new positions, half a kick by it, and a look at the outcome.
 #[inline(always)]
 fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut Scratch) {
     find_forces(simd, program, state, scratch);
     let occupied = state.layout.slots_of(state.occupied);
-    keep_forces(simd, program, state, scratch, occupied);
-    speed::set(simd, program, state, scratch, occupied);
-    let mut diverged = Mask::NONE;
-    for block in 0..state.motion.x.len() {
-        // Someone who has just entered has not made this step.
-        let moving = state.present[block] & scratch.moving[block];
-        for part in parts(simd) {
-            let here = part.mask(moving);
-            let (vx, vy) = kicked(part, state, block);
-            part.store_in(here, vx, &mut state.motion.vx[block]);
-            part.store_in(here, vy, &mut state.motion.vy[block]);
-            // Zero times a position is no number where the position is none or infinite.
-            let (x, y) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
-            let square = vx * vx + vy * vy + (x + y) * part.c(0.0);
-            let sound = square.simd_le(part.c(TOP_SPEED * TOP_SPEED));
-            diverged |= part.bits(here & !sound);
-        }
+    let is_social = program.forces.speeds.is_none();
+    if !is_social {
+        keep_forces(simd, program, state, scratch, occupied);
+        set_speeds(simd, program, state, scratch, occupied);
     }
+    let threads = scratch.threads_of(state);
+    let diverged = state.each(
+        simd,
+        threads,
+        #[inline(always)]
+        |still, block, mut moves| {
+            // Someone who has just entered has not made this step.
+            let moving = still.present[block] & scratch.moving[block];
+            let mut diverged = Mask::NONE;
+            for part in parts(simd) {
+                if is_social {
+                    let here = part.mask(still.present[block] & occupied);
+                    keep(part, program, still, block, &mut moves, (here, &scratch.sums[block]));
+                }
+                let here = part.mask(moving);
+                let (vx, vy) = kicked(part, still, block, &moves);
+                part.store_in(here, vx, moves.vx);
+                part.store_in(here, vy, moves.vy);
+                // Zero times a position is no number where the position is none or infinite.
+                let (x, y) = (part.load(moves.x), part.load(moves.y));
+                let square = vx * vx + vy * vy + (x + y) * part.c(0.0);
+                let sound = square.simd_le(part.c(TOP_SPEED * TOP_SPEED));
+                diverged |= part.bits(here & !sound);
+            }
+            diverged
+        },
+    );
     state.diverged |= match state.layout {
         Layout::Trials => diverged,
         Layout::Agents if diverged.is_empty() => Mask::NONE,

@@ -17,6 +17,7 @@ pub mod fault;
 pub mod force;
 mod lanewise;
 pub mod layout;
+mod mover;
 mod near;
 
 pub mod noise;

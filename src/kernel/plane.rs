@@ -6,7 +6,7 @@ use crate::model::{Period, Periods};
 use fearless_simd::Simd;
 
 /// Which way leads from one place to another.
-pub(super) trait Plane: Copy {
+pub(super) trait Plane: Copy + Sync {
     /// Whether it may be another one than the difference of the places.
     const IS_CLOSED: bool;
 

@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// three times as fast with 200 agents who start at the same places in all trials.
 pub const LARGEST_IN_LANES: usize = 256;
 
+/// Threads may share one trial of more agents than these: in a smaller one they wait for each other longer than they work.
+pub(super) const LARGE: usize = 2000;
+
 /// A scenario made ready to run.
 #[derive(Clone, Debug)]
 pub struct Program {
@@ -86,6 +89,11 @@ impl Program {
             behaviours,
             passing,
         }
+    }
+
+    /// Whether threads may share one trial (`Run::share`).
+    pub fn is_large(&self) -> bool {
+        self.layout == Layout::Agents && self.scenario.agents.len() > LARGE
     }
 }
 

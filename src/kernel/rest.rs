@@ -5,7 +5,7 @@
 //! for where it would come to rest now, its driving velocity is `(rest - x - v tau)/tau`, at most `hold`: a displacement
 //! fades out with the relaxation time and without a swing.
 
-use super::state::State;
+use super::state::{State, Still};
 use super::vector::{Doubles, Part};
 use crate::base::lanes::Mask;
 use crate::model::Parameter;
@@ -16,16 +16,16 @@ use fearless_simd::prelude::*;
 #[inline(always)]
 pub(super) fn back<S: Simd>(
     part: Part<S>,
-    state: &State,
+    still: &Still<'_>,
     block: usize,
     (x, y): (Doubles<S>, Doubles<S>),
     (vx, vy): (Doubles<S>, Doubles<S>),
 ) -> (Doubles<S>, Doubles<S>) {
-    let tau = part.load(&state.bodies[Parameter::Tau][block]);
-    let dx = part.load(&state.driving.rest_x[block]) - (x + vx * tau);
-    let dy = part.load(&state.driving.rest_y[block]) - (y + vy * tau);
+    let tau = part.load(&still.bodies[Parameter::Tau][block]);
+    let dx = part.load(&still.driving.rest_x[block]) - (x + vx * tau);
+    let dy = part.load(&still.driving.rest_y[block]) - (y + vy * tau);
     let pace = (dx * dx + dy * dy).sqrt() / tau;
-    let limit = part.load(&state.bodies[Parameter::Hold][block]);
+    let limit = part.load(&still.bodies[Parameter::Hold][block]);
     let rate = pace.simd_gt(limit).select(limit / pace, part.c(1.0)) / tau;
     (dx * rate, dy * rate)
 }

@@ -179,6 +179,12 @@ impl<'p> Run<'p> {
         Self { horizon, last: self.program.scenario.clock.seconds(horizon), ..self }
     }
 
+    /// So many threads of the pool of the calling one share a crowd that is large enough. States have the same bits at any
+    /// number.
+    pub fn share(&mut self, threads: usize) {
+        self.scratch.share(threads);
+    }
+
     /// The present states.
     pub fn state(&self) -> &State {
         &self.state

@@ -5,11 +5,9 @@
 //! component, as in agents that forces move, and the relaxation time [`FORGETS`]. The model of the paper has none.
 
 use super::composure::allowed;
-use super::dynamics::Scratch;
 use super::force::pair::Sum;
-use super::program::Program;
-use super::state::{Layout, State};
-use super::vector::{Doubles, Part, Truths, parts};
+use super::state::{State, Still};
+use super::vector::{Doubles, Part, Truths};
 use crate::base::lanes::Mask;
 use crate::model::Parameter;
 use fearless_simd::Simd;
@@ -21,36 +19,6 @@ pub(super) const FORGETS: f64 = 0.5;
 /// Both components.
 type Vector<S> = (Doubles<S>, Doubles<S>);
 
-/// Gives the agents in some lanes the velocities that follow from the places and directions of a state, whose sums of turns
-/// were kept as its forces.
-#[inline(always)]
-pub(super) fn set<S: Simd>(
-    simd: S,
-    program: &Program,
-    state: &mut State,
-    scratch: &mut Scratch,
-    lanes: Mask,
-) {
-    if program.forces.speeds.is_none() {
-        return;
-    }
-    for block in 0..state.motion.x.len() {
-        for part in parts(simd) {
-            turn(part, state, block, lanes);
-        }
-    }
-    let Scratch { lanewise, cells, rooms, contacts, .. } = scratch;
-    match state.layout {
-        Layout::Trials => lanewise.rooms(simd, &program.forces, state, rooms, contacts),
-        Layout::Agents => cells.rooms(simd, &program.forces, state, rooms, contacts),
-    }
-    for block in 0..state.motion.x.len() {
-        for part in parts(simd) {
-            go(part, state, block, lanes, &rooms[block]);
-        }
-    }
-}
-
 /// Which of a block are agents of the model.
 #[inline(always)]
 fn those<S: Simd>(part: Part<S>, state: &State, block: usize, lanes: Mask) -> Truths<S> {
@@ -60,7 +28,7 @@ fn those<S: Simd>(part: Part<S>, state: &State, block: usize, lanes: Mask) -> Tr
 
 /// The direction: the driving direction and the sum of turns. Where both cancel, the last one stays.
 #[inline(always)]
-fn turn<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask) {
+pub(super) fn turn<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask) {
     let here = those(part, state, block, lanes);
     let x = part.load(&state.driving.ex[block]) + part.load(&state.motion.fx[block]);
     let y = part.load(&state.driving.ey[block]) + part.load(&state.motion.fy[block]);
@@ -72,7 +40,7 @@ fn turn<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask) {
 
 /// The velocity: along the direction, as fast as is wanted and as the room ahead allows.
 #[inline(always)]
-fn go<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask, room: &Sum) {
+pub(super) fn go<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask, room: &Sum) {
     let here = those(part, state, block, lanes);
     let (wanted, slowness) = (part.load(&state.driving.speed[block]), part.load(&room.slowness));
     let speed = allowed(part, wanted, slowness);
@@ -91,13 +59,13 @@ fn go<S: Simd>(part: Part<S>, state: &mut State, block: usize, lanes: Mask, room
 #[inline(always)]
 pub(super) fn with_noise<S: Simd>(
     part: Part<S>,
-    state: &State,
+    still: &Still<'_>,
     block: usize,
     ((vx, vy), others): (Vector<S>, Vector<S>),
     left: f64,
 ) -> Vector<S> {
-    let here = part.load(&state.bodies[Parameter::SwerveRange][block]).simd_gt(part.c(0.0));
-    let (go_x, go_y) = (part.load(&state.driving.go_x[block]), part.load(&state.driving.go_y[block]));
+    let here = part.load(&still.bodies[Parameter::SwerveRange][block]).simd_gt(part.c(0.0));
+    let (go_x, go_y) = (part.load(&still.driving.go_x[block]), part.load(&still.driving.go_y[block]));
     let left = part.c(left);
     (here.select(go_x + (vx - go_x) * left, others.0), here.select(go_y + (vy - go_y) * left, others.1))
 }

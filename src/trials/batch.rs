@@ -59,6 +59,11 @@ impl<'s, M: Monitors> Batch<'s, M> {
         Self { run: Run::new(program), monitors, places: [None; LANES], between_looks, steps: 0 }
     }
 
+    /// So many threads of the pool of the calling one share a large crowd.
+    pub fn share(&mut self, threads: usize) {
+        self.run.share(threads);
+    }
+
     /// Runs trials until `next` gives no more, or the budget says stop; then unfinished trials are cut.
     pub fn run<'c>(&mut self, next: &mut dyn FnMut() -> Option<(usize, Address<'c>)>, budget: &Budget) {
         let (mut exhausted, mut rounds) = (false, 0u32);

@@ -50,6 +50,13 @@ impl<'s> Runner<'s> {
         Ok(Self { setup, columns: columns.to_vec(), kind })
     }
 
+    /// So many threads of the pool of the calling one share each trial of a large crowd.
+    pub fn share(&mut self, threads: usize) {
+        if let RunnerKind::Steps(batch) = &mut self.kind {
+            batch.share(threads);
+        }
+    }
+
     /// Whether it observes just these columns.
     pub fn serves(&self, columns: &[usize]) -> bool {
         self.columns == columns

@@ -28,7 +28,7 @@ impl Chosen {
     }
 
     /// The numbers.
-    pub(super) fn trials(self) -> Box<dyn Iterator<Item = u64>> {
+    pub(super) fn trials(self) -> Box<dyn Iterator<Item = u64> + Send> {
         match self {
             Self::All(range) => Box::new(range),
             Self::Kept(list) => Box::new(list.into_iter()),

@@ -8,6 +8,7 @@ mod rows;
 use super::arguments::Simulate;
 use super::page::Trials;
 use super::terminal::{Colors, warn};
+use super::values::threads;
 use super::{complaint, inputs, output, page};
 use crate::base::random::MOST_TRIALS;
 use crate::base::tick::{Clock, Tick};
@@ -142,12 +143,17 @@ fn simulate(
         });
     }
     let table = rows::table(&scenario, arguments.seed, every);
+    let helpers = if program.is_large() { Some(threads(None)?) } else { None };
     for part in files {
         if rows.is_interrupted() {
             break;
         }
         let written = part.and_then(|(file, chosen)| {
-            write(destination.format, file.as_deref(), &table, rows.of(chosen.trials()))
+            let rows = rows.of(chosen.trials());
+            let format = destination.format;
+            let Some(threads) = &helpers else { return write(format, file.as_deref(), &table, rows) };
+            rows.share(threads.count());
+            threads.helped(|| write(format, file.as_deref(), &table, rows)).unwrap_or(Ok(()))
         });
         if let Err(error) = written {
             complaint::tell(&error, &[], colors);

@@ -53,7 +53,7 @@ pub(super) struct Rows<'p> {
     every: u64,
     advice: Option<(usize, usize)>,
     /// The trials that come.
-    trials: Box<dyn Iterator<Item = u64> + 'p>,
+    trials: Box<dyn Iterator<Item = u64> + Send + 'p>,
     /// The trial that is under way, if one is; its state, and the one of its agents that comes next.
     run: Run<'p>,
     trial: Option<u64>,
@@ -93,9 +93,14 @@ impl<'p> Rows<'p> {
     }
 
     /// The rows of these trials come next.
-    pub(super) fn of(&mut self, trials: impl Iterator<Item = u64> + 'p) -> &mut Self {
+    pub(super) fn of(&mut self, trials: impl Iterator<Item = u64> + Send + 'p) -> &mut Self {
         self.trials = Box::new(trials);
         self
+    }
+
+    /// So many threads of the pool of the calling one share a large crowd.
+    pub(super) fn share(&mut self, threads: usize) {
+        self.run.share(threads);
     }
 
     /// Whether a signal has asked to stop.

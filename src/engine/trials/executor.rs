@@ -229,6 +229,37 @@ impl Threads {
         Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()? })
     }
 
+    /// Does some work on so many of them, while the others help: they take what those share, and wait for it awake, because
+    /// a thread that sleeps wakes up later than the step of a crowd lasts.
+    pub fn together<R: Send>(&self, workers: usize, work: impl Fn() -> R + Sync) -> Vec<R> {
+        let at_work = AtomicUsize::new(workers);
+        let results = self.pool.broadcast(|context| {
+            if context.index() < workers {
+                let _over = Over(&at_work);
+                return Some(work());
+            }
+            while at_work.load(Ordering::Relaxed) > 0 {
+                if rayon::yield_now() != Some(rayon::Yield::Executed) {
+                    std::hint::spin_loop();
+                }
+            }
+            None
+        });
+        results.into_iter().flatten().collect()
+    }
+
+    /// Does some work on one of them, while the others help.
+    pub fn helped<R: Send>(&self, work: impl FnOnce() -> R + Send) -> Option<R> {
+        let work = Mutex::new(Some(work));
+        let take = || work.lock().ok().and_then(|mut work| work.take());
+        self.together(1, || take().map(|work| work())).pop().flatten()
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
     /// What `work` makes of each item, in their order.
     pub fn map<T: Sync, R: Send>(&self, items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
         self.pool.install(|| items.par_iter().map(&work).collect())
@@ -280,18 +311,23 @@ impl Threads {
                 Task { job, items, next: AtomicUsize::new(0), blocks, over: AtomicBool::new(false) }
             })
             .collect();
+        // Threads without a trial of their own help those that have one, where the crowd is large.
+        let helpers = threads / workers;
         let work = || -> Result<Vec<Finished>, Invalid> {
             let is_due = |k: usize| k == 0 || !budget.must_stop();
             let tasks = tasks.iter().enumerate();
             tasks
-                .map(|(k, task)| if is_due(k) { task.work(budget) } else { Ok(Finished::default()) })
+                .map(|(k, task)| if is_due(k) { task.work(budget, helpers) } else { Ok(Finished::default()) })
                 .collect()
         };
-        let results: Vec<Result<Vec<Finished>, Invalid>> = if workers == 1 {
-            vec![work()]
-        } else {
-            self.pool.broadcast(|context| if context.index() < workers { work() } else { Ok(Vec::new()) })
-        };
+        let results: Vec<Result<Vec<Finished>, Invalid>> =
+            if helpers > 1 && parts.iter().any(|(job, _)| job.prepared.program.is_large()) {
+                self.together(workers, work)
+            } else if workers == 1 {
+                vec![work()]
+            } else {
+                self.pool.broadcast(|context| if context.index() < workers { work() } else { Ok(Vec::new()) })
+            };
         drop(tasks);
         for result in results {
             for ((cells, finished), (job, _)) in rounds.iter_mut().zip(result?).zip(parts) {
@@ -305,6 +341,15 @@ impl Threads {
             }
         }
         Ok(rounds)
+    }
+}
+
+/// Counts down when some work is over, though it be by a panic.
+struct Over<'a>(&'a AtomicUsize);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -327,11 +372,12 @@ struct Task<'p, 's, B> {
 
 impl<'p, B: Iterator<Item = Block<'p>>> Task<'p, '_, B> {
     /// Runs what is left, on one thread.
-    fn work(&self, budget: &Budget) -> Result<Finished, Invalid> {
+    fn work(&self, budget: &Budget, threads: usize) -> Result<Finished, Invalid> {
         if self.over.load(Ordering::Relaxed) {
             return Ok(Finished::default());
         }
         let mut worker = self.job.worker()?;
+        worker.share(threads);
         while worker.takes_blocks() {
             let Some(mut block) = self.blocks.lock().ok().and_then(|mut blocks| blocks.next()) else { break };
             worker.run_block(self.job.series, &mut block, budget);

@@ -8,25 +8,28 @@
 //! Each strip ends with absent bodies as padding; bodies that a vector catches beyond its range are out of
 //! reach and add zero. An agent's own vectors are summed over eight logical lanes whatever the width of the
 //! machine; what others add to it comes in their order.
+//!
+//! Threads share the strips (`share`). Into how many shares they are cut changes no bit.
 
 mod pairs;
 mod reach;
+mod share;
 mod walls;
 
 use super::contact::Contacts;
 use super::force::pair::{PairTerm, Sum};
+use super::force::walls::Surfaces;
 use super::force::{Forces, Room, walls as faces, with_pair_terms};
 use super::near::{Close, Grid, Index};
-use super::plane::Open;
+use super::plane::{Open, Plane};
 use super::state::State;
-use super::vector::parts;
 use crate::base::geometry::Vec2;
-use crate::base::lanes::LANES;
+use crate::base::lanes::{LANES, Mask};
 use crate::model::Periods;
 use fearless_simd::Simd;
-use pairs::{Task, Touch};
+use rayon::prelude::*;
 use reach::Reach;
-use reach::Sorted;
+use share::Share;
 use walls::Walls;
 
 /// Room for the forces of one large crowd.
@@ -35,17 +38,8 @@ pub(super) struct Cells {
     /// The order of the agents, which that of the columns and of the forces follows.
     index: Index,
     images: Images,
-    /// What the terms between two bodies keep of each agent: a column for each number.
-    columns: Vec<Vec<f64>>,
-    /// The forces.
-    fx: Vec<f64>,
-    fy: Vec<f64>,
-    /// The slowness that those ahead impose; empty where nobody keeps a headway.
-    slowness: Vec<f64>,
-    /// Of one strip: the vectors of neighbours, and the sums of its agents over eight lanes.
-    tasks: Vec<Task>,
-    touches: Vec<Touch>,
-    own: Vec<Sum>,
+    /// The strips, some to each thread.
+    shares: Vec<Share>,
     faces: faces::Room,
     walls: Walls,
     /// As in `Close`.
@@ -61,12 +55,12 @@ impl Cells {
         (self.edge > f64::NEG_INFINITY).then_some(Close { pairs, edge: self.edge, index: Some(&self.index) })
     }
 
-    /// Forces at the present positions into `sums`, and who may touch whom into `contacts`.
+    /// Forces at the present positions into `sums`, and who may touch whom into `contacts`; on so many threads.
     #[inline(always)]
     pub(super) fn forces<S: Simd>(
         &mut self,
         simd: S,
-        forces: &Forces,
+        (forces, threads): (&Forces, usize),
         state: &State,
         sums: &mut Vec<Sum>,
         contacts: &mut Contacts,
@@ -85,32 +79,25 @@ impl Cells {
             || self.index.sort(simd, &reach.extent, Grid::new(&reach.extent, reach.cell(), state), state),
         );
         self.add_images(&reach, &forces.periods);
-        with_pair_terms!(
-            forces,
-            term,
-            _,
-            simd.vectorize(
-                #[inline(always)]
-                || self.keep(simd, term, state),
-            )
-        );
+        // The images are behind the agents, and felt in all strips.
+        Share::cut(&mut self.shares, &self.index, if self.images.start.is_empty() { threads } else { 1 });
         simd.vectorize(
             #[inline(always)]
             || self.look_at_walls(simd, &reach, forces, state, contacts),
         );
         let surfaces = forces.surfaces(state.doors.sets[0]);
-        // A function for each combination of terms, as in `lanewise`.
         with_pair_terms!(
             forces,
             term,
             plane,
-            simd.vectorize(
-                #[inline(always)]
-                || self.pairs(simd, &reach, (term, plane), (forces, surfaces), contacts),
-            )
+            self.pairs(simd, &reach, (term, plane), (forces, surfaces), state)
         );
-        self.add_walls();
+        for &(one, other) in self.shares.iter().flat_map(|share| &share.close) {
+            contacts.push_pair(one, other, Mask::lane(0));
+        }
         self.scatter(sums);
+        self.add_walls(sums);
+        self.scatter_images(sums);
         self.reach = Some(reach);
         contacts.arrange();
         forces.add_cohesion(state, sums);
@@ -118,87 +105,86 @@ impl Cells {
 
     /// The slowness that the room ahead imposes, at the places that `forces` saw, into `sums`.
     #[inline(always)]
-    pub(super) fn rooms<S: Simd>(
-        &mut self,
-        simd: S,
-        forces: &Forces,
-        state: &State,
-        sums: &mut Vec<Sum>,
-        contacts: &mut Contacts,
-    ) {
+    pub(super) fn rooms<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State, sums: &mut Vec<Sum>) {
         sums.clear();
         sums.resize(state.motion.x.len(), Sum::default());
         let Some(reach) = self.reach.filter(|_| state.occupied.has(0)) else { return };
         let (room, surfaces) = (Room::of(state), forces.surfaces(state.doors.sets[0]));
-        simd.vectorize(
-            #[inline(always)]
-            || self.keep(simd, room, state),
-        );
         match forces.closed {
-            None => simd.vectorize(
-                #[inline(always)]
-                || self.pairs(simd, &reach, (room, Open), (forces, surfaces), contacts),
-            ),
-            Some(plane) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs(simd, &reach, (room, plane), (forces, surfaces), contacts),
-            ),
+            None => self.pairs(simd, &reach, (room, Open), (forces, surfaces), state),
+            Some(plane) => self.pairs(simd, &reach, (room, plane), (forces, surfaces), state),
         }
         self.scatter(sums);
+        self.scatter_images(sums);
+    }
+
+    /// All that agents do to each other.
+    #[inline(always)]
+    fn pairs<S: Simd, T: PairTerm, P: Plane>(
+        &mut self,
+        simd: S,
+        reach: &Reach,
+        (term, plane): (T, P),
+        of: (&Forces, &Surfaces),
+        state: &State,
+    ) {
+        let Self { index, images, shares, walls, .. } = self;
+        let around = Around { index, images, walls, reach };
+        // A function for each combination of terms, as in `lanewise`.
+        let work = |share: &mut Share| {
+            simd.vectorize(
+                #[inline(always)]
+                || share.keep(simd, term, index, state),
+            );
+            simd.vectorize(
+                #[inline(always)]
+                || share.pairs(simd, &around, (term, plane), of),
+            );
+        };
+        match shares.as_mut_slice() {
+            [all] => work(all),
+            some => some.par_iter_mut().with_max_len(1).for_each(work),
+        }
     }
 
     /// Hands the forces to the agents.
     fn scatter(&self, sums: &mut [Sum]) {
-        for strip in 0..self.index.grid.strips {
-            for at in self.index.strip(strip) {
+        for share in &self.shares {
+            for at in share.strips.clone().flat_map(|strip| self.index.strip(strip)) {
                 let agent = self.index.agent[at] as usize;
-                let sum = &mut sums[agent / LANES];
-                sum.x.0[agent % LANES] = self.fx[at];
-                sum.y.0[agent % LANES] = self.fy[at];
-                if let Some(slowness) = self.slowness.get(at) {
-                    sum.slowness.0[agent % LANES] = *slowness;
+                let (sum, lane, from) = (&mut sums[agent / LANES], agent % LANES, at - share.first);
+                sum.x.0[lane] = share.fx[from];
+                sum.y.0[lane] = share.fy[from];
+                if let Some(slowness) = share.slowness.get(from) {
+                    sum.slowness.0[lane] = *slowness;
                 }
             }
         }
-        for at in self.image_places().filter(|&at| self.index.r[at] > f64::NEG_INFINITY) {
+    }
+
+    /// Adds the forces on the images of agents.
+    fn scatter_images(&self, sums: &mut [Sum]) {
+        let Some(share) = self.shares.first() else { return };
+        for at in self.images.places(&self.index).filter(|&at| self.index.r[at] > f64::NEG_INFINITY) {
             let agent = self.index.agent[at] as usize;
             let (sum, lane) = (&mut sums[agent / LANES], agent % LANES);
-            sum.x.0[lane] += self.fx[at];
-            sum.y.0[lane] += self.fy[at];
-            if let Some(&slowness) = self.slowness.get(at) {
+            sum.x.0[lane] += share.fx[at];
+            sum.y.0[lane] += share.fy[at];
+            if let Some(&slowness) = share.slowness.get(at) {
                 let most = &mut sum.slowness.0[lane];
                 *most = if slowness > *most { slowness } else { *most };
             }
         }
     }
+}
 
-    /// Takes over what a term keeps of each agent, and makes room for the forces.
-    #[inline(always)]
-    fn keep<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, state: &State) {
-        let total = self.index.agent.len();
-        for field in [&mut self.fx, &mut self.fy] {
-            field.clear();
-            field.resize(total, 0.0);
-        }
-        self.slowness.clear();
-        self.slowness.resize(if T::KEEPS_HEADWAY { total } else { 0 }, 0.0);
-        self.columns.resize_with(T::COUNT, Vec::new);
-        for column in &mut self.columns {
-            column.resize(total, 0.0);
-        }
-        let Self { index, columns, .. } = self;
-        for (k, agents) in index.agent.chunks_exact(LANES).enumerate() {
-            for part in parts(simd) {
-                term.keep(
-                    part,
-                    state,
-                    Sorted { part, agents },
-                    #[inline(always)]
-                    |column, numbers| part.put(numbers, &mut columns[column][k * LANES..]),
-                );
-            }
-        }
-    }
+/// What a share reads of the whole crowd.
+#[derive(Clone, Copy)]
+struct Around<'a> {
+    index: &'a Index,
+    images: &'a Images,
+    walls: &'a Walls,
+    reach: &'a Reach,
 }
 
 // Images of agents on a closed plane: those that someone near the end of a period feels behind it.
@@ -220,6 +206,12 @@ impl Images {
         let rows = self.start.chunks_exact(row).skip(strip.saturating_sub(1));
         let spans = rows.take(if strip == 0 { 2 } else { 3 });
         spans.map(move |start| (start[columns.0], start[columns.1 + 1])).filter(|(from, to)| from < to)
+    }
+
+    /// Their places among the sorted agents, padding among them.
+    fn places(&self, index: &Index) -> std::ops::Range<usize> {
+        let end = index.agent.len();
+        if self.start.is_empty() { end..end } else { self.first..end }
     }
 }
 
@@ -269,11 +261,5 @@ impl Cells {
         while !(end as usize).is_multiple_of(LANES) {
             end = put(0, Vec2::new(grid.x, grid.y), f64::NEG_INFINITY);
         }
-    }
-
-    /// The places of the images among the sorted agents, padding among them.
-    fn image_places(&self) -> std::ops::Range<usize> {
-        let end = self.index.agent.len();
-        if self.images.start.is_empty() { end..end } else { self.images.first..end }
     }
 }

@@ -4,10 +4,9 @@
 //! in the strip and of those in reach in the next strip. Then the list is worked off, in one loop; no branch hangs on a
 //! distance, but for terms that cost more than one (`PairTerm::farthest`). A vector that catches nobody in reach adds zero.
 
-use super::Cells;
-use super::reach::Reach;
+use super::Around;
+use super::share::Share;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::kernel::contact::Contacts;
 use crate::kernel::force::Forces;
 use crate::kernel::force::pair::{Pair, PairTerm, Sum, is_idle};
 use crate::kernel::force::walls::Surfaces;
@@ -22,7 +21,7 @@ use fearless_simd::prelude::*;
 pub(super) struct Task {
     /// Place of the agent in its strip.
     one: u32,
-    /// Place of the first of the others.
+    /// Place of the first of the others in the share.
     others: u32,
     /// Logical lane of the first.
     lane: u32,
@@ -36,26 +35,32 @@ pub(super) struct Touch {
     lanes: Mask,
 }
 
-impl Cells {
+impl Share {
     /// All forces between agents.
     #[inline(always)]
     pub(super) fn pairs<S: Simd, T: PairTerm, P: Plane>(
         &mut self,
         simd: S,
-        reach: &Reach,
+        around: &Around<'_>,
         of: (T, P),
         (forces, surfaces): (&Forces, &Surfaces),
-        contacts: &mut Contacts,
     ) {
-        for strip in 0..self.index.grid.strips {
-            self.list(simd, reach, strip);
-            let from = self.index.strip(strip).start;
-            let found = self.work_off(simd, of, (forces, surfaces, reach.most), from);
-            let agent = &self.index.agent;
+        self.close.clear();
+        if let Some(below) = self.strips.start.checked_sub(1) {
+            // What those below do to the lowest strip of this share comes first, as if one share held all.
+            self.list(simd, around, below, true);
+            let from = around.index.strip(below).start - self.first;
+            self.work_off(simd, of, (forces, surfaces), (around, from));
+        }
+        for strip in self.strips.clone() {
+            self.list(simd, around, strip, false);
+            let from = around.index.strip(strip).start - self.first;
+            let found = self.work_off(simd, of, (forces, surfaces), (around, from));
+            let agent = &around.index.agent[self.first..];
             for touch in &self.touches[..found] {
                 for lane in touch.lanes.iter() {
                     let (a, b) = (agent[touch.one as usize], agent[touch.others as usize + lane]);
-                    contacts.push_pair(a.min(b), a.max(b), Mask::lane(0));
+                    self.close.push((a.min(b), a.max(b)));
                 }
             }
             for (k, sum) in self.own.iter().enumerate() {
@@ -69,21 +74,23 @@ impl Cells {
         }
     }
 
-    /// Lists the work of a strip.
+    /// Lists the work of a strip; at its edge alone what its agents have to do with the strip above.
     #[inline(always)]
-    fn list<S: Simd>(&mut self, simd: S, all: &Reach, strip: usize) {
-        let grid = self.index.grid;
+    fn list<S: Simd>(&mut self, simd: S, around: &Around<'_>, strip: usize, at_edge: bool) {
+        let Around { index, images, reach: all, .. } = *around;
+        let first = self.first as u32;
+        let grid = index.grid;
         let row = grid.row();
-        let here = self.index.strip(strip);
-        let own = &self.index.start[strip * row..(strip + 1) * row];
-        let above = self.index.start.get((strip + 1) * row..(strip + 2) * row);
+        let here = index.strip(strip);
+        let own = &index.start[strip * row..(strip + 1) * row];
+        let above = index.start.get((strip + 1) * row..(strip + 2) * row);
         self.own.clear();
         self.own.resize(here.len(), Sum::default());
         self.tasks.clear();
-        let is_closed = !self.image_places().is_empty();
+        let is_closed = !images.places(index).is_empty();
         let tasks = &mut self.tasks;
         let mut push = |one: usize, from: u32, to: u32| {
-            let (one, mut others, mut lane) = (one as u32, from, 0);
+            let (one, mut others, to, mut lane) = (one as u32, from - first, to - first, 0);
             // One at least: whether it is empty is harder to foresee than it is to add zero.
             loop {
                 tasks.push(Task { one, others, lane });
@@ -98,9 +105,8 @@ impl Cells {
             let (mut end, mut left, mut right) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
             for part in parts(simd) {
                 let eight = k..k + LANES;
-                let (x, y) =
-                    (part.slice(&self.index.x[eight.clone()]), part.slice(&self.index.y[eight.clone()]));
-                let reach = all.of_radius(part, part.slice(&self.index.r[eight]));
+                let (x, y) = (part.slice(&index.x[eight.clone()]), part.slice(&index.y[eight.clone()]));
+                let reach = all.of_radius(part, part.slice(&index.r[eight]));
                 part.store(grid.column(part, x + reach), &mut end);
                 let reach = all.above(part, &grid, strip, y, reach);
                 part.store(grid.column(part, x - reach), &mut left);
@@ -108,15 +114,17 @@ impl Cells {
             }
             for lane in 0..LANES.min(here.end - k) {
                 let i = k + lane;
-                push(i - here.start, i as u32 + 1, own[low_bits(end.0[lane]) as usize + 1]);
+                if !at_edge {
+                    push(i - here.start, i as u32 + 1, own[low_bits(end.0[lane]) as usize + 1]);
+                }
                 if let Some(above) = above {
                     let from = above[low_bits(left.0[lane]) as usize];
                     push(i - here.start, from, above[low_bits(right.0[lane]) as usize + 1]);
                 }
                 if is_closed {
-                    let (x, reach) = (self.index.x[i], all.most);
+                    let (x, reach) = (index.x[i], all.most);
                     let columns = (grid.column_of(x - reach), grid.column_of(x + reach));
-                    for (from, to) in self.images.near(row, strip, columns) {
+                    for (from, to) in images.near(row, strip, columns) {
                         push(i - here.start, from, to);
                     }
                 }
@@ -133,21 +141,22 @@ impl Cells {
         &mut self,
         simd: S,
         (term, plane): (T, P),
-        (forces, surfaces, reach): (&Forces, &Surfaces, f64),
-        from: usize,
+        (forces, surfaces): (&Forces, &Surfaces),
+        (&Around { index, walls, reach, .. }, from): (&Around<'_>, usize),
     ) -> usize {
         let part = first_part(simd);
-        let length = self.index.agent.len();
+        let (first, length) = (self.first, self.fx.len());
+        let mine = first..first + length;
         // Of one length, so that one comparison shows that all are long enough.
-        let (xs, ys, rs) = (&self.index.x[..length], &self.index.y[..length], &self.index.r[..length]);
+        let (xs, ys, rs) = (&index.x[mine.clone()], &index.y[mine.clone()], &index.r[mine]);
         let (fx, fy) = (&mut self.fx[..length], &mut self.fy[..length]);
         let slownesses = self.slowness.as_mut_slice();
         let columns = T::load(
             #[inline(always)]
             |k| &self.columns[k][..length],
         );
-        let (minus_margin, reach) = (part.c(-forces.margin), part.c(reach));
-        let has_screens = self.walls.has_screens();
+        let (minus_margin, reach) = (part.c(-forces.margin), part.c(reach.most));
+        let has_screens = walls.has_screens();
         let mut found = 0;
         for task in &self.tasks {
             let (i, j) = (from + task.one as usize, task.others as usize);
@@ -170,7 +179,7 @@ impl Cells {
                 found += usize::from(!lanes.is_empty());
             }
             if has_screens {
-                let screens = self.walls.screens(i);
+                let screens = walls.screens(first + i);
                 if !screens.is_empty() && pair.distance.simd_lt(reach).any_true() {
                     let there = (part.slice(&xs[j..j + LANES]), part.slice(&ys[j..j + LANES]));
                     let hidden = surfaces.hide(screens, part, (part.c(xs[i]), part.c(ys[i])), there);

@@ -9,6 +9,7 @@ use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::force::Forces;
+use crate::kernel::force::pair::Sum;
 use crate::kernel::force::walls::{AtWalls, Surfaces, Tiles};
 use crate::kernel::near::Index;
 use crate::kernel::state::State;
@@ -185,10 +186,12 @@ impl Cells {
     }
 
     /// Adds the force of walls, after those between agents.
-    pub(super) fn add_walls(&mut self) {
+    pub(super) fn add_walls(&self, sums: &mut [Sum]) {
         for &(at, force) in &self.walls.forces {
-            self.fx[at as usize] += force.x;
-            self.fy[at as usize] += force.y;
+            let agent = self.index.agent[at as usize] as usize;
+            let sum = &mut sums[agent / LANES];
+            sum.x.0[agent % LANES] += force.x;
+            sum.y.0[agent % LANES] += force.y;
         }
     }
 }

@@ -103,7 +103,7 @@ impl<S: Simd> Pair<S> {
 }
 
 /// A term of the force between two bodies.
-pub(in crate::kernel) trait PairTerm: Copy {
+pub(in crate::kernel) trait PairTerm: Copy + Sync {
     /// How many numbers it keeps of a body.
     const COUNT: usize;
     /// Whether bodies keep a headway.

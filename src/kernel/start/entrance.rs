@@ -32,8 +32,8 @@ pub(super) fn enter(
     put(&mut state.motion.y, at.y);
     put(&mut state.motion.vx, velocity.x);
     put(&mut state.motion.vy, velocity.y);
-    let Motion { travelled, fx, fy, .. } = &mut state.motion;
-    for field in [travelled, fx, fy, &mut state.driving.slowness] {
+    let Motion { travelled, fx, fy, slowness, .. } = &mut state.motion;
+    for field in [travelled, fx, fy, slowness] {
         put(field, 0.0);
     }
     state.driving.move_on(slot);

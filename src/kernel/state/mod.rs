@@ -8,6 +8,7 @@
 mod bodies;
 mod clocks;
 mod doors;
+mod motion;
 mod passages;
 pub(super) mod plans;
 pub(super) mod progress;
@@ -22,6 +23,8 @@ use crate::model::{AgentId, Periods, Scenario, Source};
 pub use bodies::Bodies;
 pub use clocks::Clocks;
 pub use doors::ClosedDoors;
+pub use motion::Motion;
+pub(super) use motion::{Moves, Still};
 pub use passages::Passages;
 pub use plans::Plans;
 pub use progress::Progress;
@@ -227,9 +230,6 @@ pub struct Driving {
     pub ey: Vec<Lanes>,
     /// Driving speed at present, m/s: that of the body, or 0 in an agent that stands.
     pub speed: Vec<Lanes>,
-    /// One over the largest driving speed that the headway to those ahead allows, s/m; 0 where nobody is. Kept from step to
-    /// step with the forces.
-    pub slowness: Vec<Lanes>,
     /// Where an agent of the collision-free speed model goes, a unit vector.
     pub course_x: Vec<Lanes>,
     /// The same, second component.
@@ -253,7 +253,6 @@ impl Driving {
             ex: vec![Lanes::splat(1.0); blocks],
             ey: zero(),
             speed: zero(),
-            slowness: zero(),
             course_x: vec![Lanes::splat(1.0); blocks],
             course_y: zero(),
             go_x: zero(),
@@ -265,9 +264,7 @@ impl Driving {
 
     /// An agent that stands.
     pub(in crate::kernel) fn clear(&mut self, slot: Slot) {
-        for (field, value) in
-            [(&mut self.ex, 1.0), (&mut self.ey, 0.0), (&mut self.speed, 0.0), (&mut self.slowness, 0.0)]
-        {
+        for (field, value) in [(&mut self.ex, 1.0), (&mut self.ey, 0.0), (&mut self.speed, 0.0)] {
             field[slot.block].0[slot.lane] = value;
         }
         self.move_on(slot);
@@ -277,43 +274,6 @@ impl Driving {
     pub(in crate::kernel) fn move_on(&mut self, slot: Slot) {
         for field in [&mut self.rest_x, &mut self.rest_y] {
             field[slot.block].0[slot.lane] = f64::INFINITY;
-        }
-    }
-}
-
-// The places and velocities of all agents: part of the state.
-
-/// Positions, velocities and forces of all slots.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
-    /// Position, m.
-    pub x: Vec<Lanes>,
-    /// Position, second coordinate, m.
-    pub y: Vec<Lanes>,
-    /// Velocity, m/s.
-    pub vx: Vec<Lanes>,
-    /// Velocity, second component, m/s.
-    pub vy: Vec<Lanes>,
-    /// Force of everything but contact at the present positions, N; kept from step to step.
-    pub fx: Vec<Lanes>,
-    /// Force, second component, N.
-    pub fy: Vec<Lanes>,
-    /// Length of the way gone, m.
-    pub travelled: Vec<Lanes>,
-}
-
-impl Motion {
-    /// So many blocks at rest in the origin.
-    fn new(blocks: usize) -> Self {
-        let zero = || vec![Lanes::ZERO; blocks];
-        Self { x: zero(), y: zero(), vx: zero(), vy: zero(), fx: zero(), fy: zero(), travelled: zero() }
-    }
-
-    /// At rest in the origin.
-    pub(in crate::kernel) fn clear(&mut self, slot: Slot) {
-        let Self { x, y, vx, vy, fx, fy, travelled } = self;
-        for field in [x, y, vx, vy, fx, fy, travelled] {
-            field[slot.block].0[slot.lane] = 0.0;
         }
     }
 }
