@@ -45,6 +45,7 @@ mod mutants;
 mod mutation;
 mod nesting;
 mod objects;
+mod outcomes;
 mod pages;
 mod papers;
 mod perception;

@@ -108,7 +108,7 @@ fn commands_of_the_pages_behind_it_do_what_they_say() {
 
 #[test]
 fn commands_of_the_first_pages_do_what_they_say() {
-    for page in ["tutorial.md", "README.md", "buildings.md"] {
+    for page in ["tutorial.md", "README.md", "buildings.md", "outcomes.md"] {
         run(page);
     }
 }

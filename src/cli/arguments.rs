@@ -98,7 +98,10 @@ const GROUPS: [(&str, &[&str]); 7] = [
 
 /// The command line, with its verbs in groups.
 pub(super) fn definition() -> Command {
-    let all = Arguments::command();
+    // Without a scenario the first property file stands in its place.
+    let all = Arguments::command().mut_subcommand("check", |check| {
+        check.mut_arg("properties", |files| files.required(false).required_unless_present("outcomes"))
+    });
     let mut list = String::new();
     for (group, verbs) in GROUPS {
         list += &format!("{group}:\n");
@@ -172,6 +175,7 @@ pub(super) struct Detail {
 
 /// `smc check`
 #[derive(Args, Debug)]
+#[command(override_usage = "smc check [OPTIONS] <SCENARIO | --outcomes TABLE> <PROPERTIES>...")]
 pub(super) struct Check {
     /// What is asked.
     #[command(flatten)]
@@ -189,6 +193,14 @@ pub(super) struct Check {
     /// Folder of the parts that shards write; it is kept, so that a call can go on where another one ended.
     #[arg(long, value_name = "DIR", requires = "launch")]
     pub(super) parts: Option<PathBuf>,
+    /// Ask about outcomes that exist already instead of a scenario: a table with the columns `trial`, `query` and `value`, or `-`
+    /// for standard input. Each name in `query` is one in the property files.
+    #[arg(
+        long,
+        value_name = "TABLE",
+        conflicts_with_all = ["launch", "forecast", "timeout", "set", "data", "models", "calibration", "velocity"]
+    )]
+    pub(super) outcomes: Option<String>,
 }
 
 /// `smc merge`

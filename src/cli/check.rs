@@ -4,6 +4,7 @@ use super::arguments::{Check, Questions};
 use super::deadline::{Deadline, Ended, Phase};
 use super::launch::Launcher;
 use super::merge::Rounds;
+use super::outcomes::Given;
 use super::parts::PartsFolder;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
@@ -14,7 +15,7 @@ use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{Budget, Call, CallForecast, CommandLine, forecast, run as run_study};
+use crate::engine::{Budget, Call, CallForecast, CommandLine, Outcomes, forecast, run as run_study};
 use crate::model::Scenario;
 use crate::report::html::Page;
 use crate::report::{ExitCode as Exit, Format, Palette};
@@ -42,7 +43,24 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     budget.max_total = arguments.total_trials;
     let budget = Arc::new(budget);
     let deadline = Deadline::watch(&budget, ender(arguments, colors));
-    let inputs::Loaded { mut inputs, paths } = inputs::load(&arguments.model, &arguments.properties);
+    let table = match way {
+        Way::Check(Check { outcomes: Some(table), .. }) => Some(Given::open(table)),
+        _ => None,
+    };
+    let (given, unread) = match table.transpose() {
+        Ok(given) => (given, None),
+        Err(error) => (None, Some(error)),
+    };
+    let inputs::Loaded { mut inputs, paths } = match &unread {
+        Some(_) => inputs::Loaded::default(),
+        None => {
+            let written = given.as_ref().map(Given::scenario);
+            inputs::load_with(&arguments.model, &arguments.properties, written)
+        }
+    };
+    if let Some(given) = &given {
+        given.own(&mut inputs);
+    }
     if inputs.study.is_none() {
         deadline.enter(Phase::Printing);
     }
@@ -63,6 +81,9 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         Ok(outputs) => reporter.outputs = outputs,
         Err(error) => return reporter.refuse(error),
     }
+    if let Some(error) = unread {
+        return reporter.refuse(error);
+    }
     let Some(study) = &mut study else { return reporter.refused() };
     let only = match library::chosen(study, &arguments.only) {
         Ok(only) => only,
@@ -75,6 +96,10 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         return reporter.refuse_for(&doubts);
     }
     reporter.warn(&doubts);
+    if let Some(Err(error)) = given.as_ref().map(|given| given.settle(study)) {
+        return reporter.refuse(error);
+    }
+    let is_given = given.is_some();
     let most = most_threads();
     if arguments.cores.threads.is_some_and(|threads| threads > most) {
         say(&format!(
@@ -95,9 +120,9 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     let call = || Call {
         seed: arguments.seed,
         branch: 0,
-        explains: true,
+        explains: !is_given,
         shows_evidence: arguments.evidence || arguments.report.is_some(),
-        line: line(arguments),
+        line: CommandLine { outcomes: is_given, ..line(arguments) },
         only: only.clone(),
         place: &place,
         drivers: &drivers,
@@ -110,7 +135,11 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         };
     }
     let progress = Progress::new(arguments.quiet, deadline);
-    let result = if let Way::Check(Check { launch: None, .. }) = way {
+    let scenario = study.worlds.first().map(|world| Arc::clone(&world.scenario));
+    let result = if let (Some(given), Some(scenario)) = (given, scenario) {
+        let work = |outcomes: &Outcomes<'_>| run_study(study, &call(), outcomes, &budget, &progress);
+        given.run(&scenario, study, &executor, work).map(Some)
+    } else if let Way::Check(Check { launch: None, .. }) = way {
         let run = run_study(study, &call(), &executor, &budget, &progress);
         run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
@@ -137,7 +166,8 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
                 result.model = inputs.calibration.as_ref().and_then(|known| known.about(result));
             }
             let room = report::html::MOST_NUMBERS;
-            let shown = reporter.outputs.page.is_some().then(|| traces(study, &run, &call(), &budget, room));
+            let is_shown = reporter.outputs.page.is_some() && !is_given;
+            let shown = is_shown.then(|| traces(study, &run, &call(), &budget, room));
             reporter.finish(run, shown.unwrap_or_default())
         }
         Ok(None) => Exit::Success,

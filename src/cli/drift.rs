@@ -1,9 +1,9 @@
 //! `smc drift`: has a probability changed? A cumulative sum over recorded or streamed outcomes (Page 1954).
 
 use super::arguments::Drift;
-use super::complaint;
 use super::terminal::{Colors, print, print_to_reader};
 use super::values::TextFormat;
+use super::{complaint, inputs};
 use crate::base::math;
 use crate::data::outcomes::{Column, Outcomes};
 use crate::report::ExitCode as Exit;
@@ -11,8 +11,6 @@ use crate::stats::Cusum;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use serde_json::json;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
 
 /// Outcomes on average to a false alarm, at least, unless the call says otherwise.
 const QUIET: f64 = 1000.0;
@@ -59,8 +57,8 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
     let mut outcomes = Outcomes::new(column);
     let mut alarms: Vec<u64> = Vec::new();
     let mut successes = 0u64;
-    let name = super::inputs::shown(&arguments.file);
-    for line in lines(&arguments.file).map_err(complaint::input)? {
+    let name = inputs::shown(&arguments.file);
+    for line in inputs::lines(&arguments.file).map_err(complaint::input)? {
         let line = line.map_err(|error| complaint::input(format!("`{name}` cannot be read: {error}")))?;
         let Ok(line) = std::str::from_utf8(&line) else {
             let reason = format!("{name}: line {}: not UTF-8 text", outcomes.lines() + 1);
@@ -94,35 +92,6 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
 fn table(reason: String) -> Diagnostic {
     Diagnostic::placeless(Code::E0707, reason)
         .hint("write one outcome per line, 0 or 1, true or false; `--column` selects one of a table")
-}
-
-/// Most bytes of one line: a device that has no lines must not fill the memory.
-const LONGEST: u64 = 1 << 20;
-
-/// The lines of a file. A stream may be longer than any file: of its lines only one is kept.
-#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
-fn lines(name: &str) -> Result<impl Iterator<Item = std::io::Result<Vec<u8>>>, String> {
-    let mut from: Box<dyn BufRead> = if name == "-" {
-        Box::new(std::io::stdin().lock())
-    } else {
-        Box::new(BufReader::new(
-            File::open(name).map_err(|error| format!("`{name}` cannot be opened: {error}"))?,
-        ))
-    };
-    Ok(std::iter::from_fn(move || {
-        let mut line = Vec::new();
-        match from.by_ref().take(LONGEST + 1).read_until(b'\n', &mut line) {
-            Ok(0) => None,
-            Ok(_) if line.len() as u64 > LONGEST => {
-                Some(Err(std::io::Error::other("a line is longer than 1 MB")))
-            }
-            Ok(_) => {
-                line.pop_if(|last| *last == b'\n');
-                Some(Ok(line))
-            }
-            Err(error) => Some(Err(error)),
-        }
-    }))
 }
 
 fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> String {

@@ -10,7 +10,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Most bytes of one input.
@@ -104,6 +104,37 @@ fn whole(from: impl Read) -> Result<Vec<u8>, Unread> {
     if bytes.len() as u64 > MOST_BYTES { Err(Unread::Large) } else { Ok(bytes) }
 }
 
+/// Most bytes of one line: a device that has no lines must not fill the memory.
+const LONGEST: u64 = 1 << 20;
+
+/// The lines of a file. A stream may be longer than any file: of its lines only one is kept.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(super) fn lines(
+    name: &str,
+) -> Result<impl Iterator<Item = std::io::Result<Vec<u8>>> + Send + use<>, String> {
+    let mut from: Box<dyn BufRead + Send> = if name == "-" {
+        Box::new(BufReader::new(std::io::stdin()))
+    } else {
+        Box::new(BufReader::new(
+            File::open(name).map_err(|error| format!("`{name}` cannot be opened: {error}"))?,
+        ))
+    };
+    Ok(std::iter::from_fn(move || {
+        let mut line = Vec::new();
+        match from.by_ref().take(LONGEST + 1).read_until(b'\n', &mut line) {
+            Ok(0) => None,
+            Ok(_) if line.len() as u64 > LONGEST => {
+                Some(Err(std::io::Error::other("a line is longer than 1 MB")))
+            }
+            Ok(_) => {
+                line.pop_if(|last| *last == b'\n');
+                Some(Ok(line))
+            }
+            Err(error) => Some(Err(error)),
+        }
+    }))
+}
+
 /// Name of a source for people.
 pub(super) fn shown(name: &str) -> &str {
     if name == "-" { "<stdin>" } else { name }
@@ -163,6 +194,8 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
 /// The files of a call on the disk.
 struct Disk<'m> {
     model: &'m Model,
+    /// The text of the scenario, where it is not that of a file.
+    written: Option<String>,
     /// The files that were opened, where they were found.
     paths: Vec<PathBuf>,
 }
@@ -170,7 +203,10 @@ struct Disk<'m> {
 impl Folder for Disk<'_> {
     fn text(&mut self, name: &str) -> Result<Vec<u8>, String> {
         self.paths.push(PathBuf::from(if name == "-" { STDIN } else { name }));
-        read(name)
+        match &self.written {
+            Some(text) if name == self.model.scenario => Ok(text.clone().into_bytes()),
+            _ => read(name),
+        }
     }
 
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
@@ -192,6 +228,7 @@ impl Folder for Disk<'_> {
 }
 
 /// What a call has read.
+#[derive(Default)]
 pub(super) struct Loaded {
     /// The texts, what is wrong with them, and what they mean.
     pub(super) inputs: Inputs,
@@ -213,7 +250,7 @@ fn names<'a>(model: &'a Model, properties: &'a [String]) -> Names<'a> {
 
 /// Reads and parses what a call names; also the files that were opened, where they were found.
 pub(super) fn parse(model: &Model, properties: &[String]) -> (Parsed, Vec<PathBuf>) {
-    let mut disk = Disk { model, paths: Vec::new() };
+    let mut disk = Disk { model, written: None, paths: Vec::new() };
     // Of recordings that are replayed each is read by itself, with the velocities that the command asks for.
     (read_all(Names { velocity: None, ..names(model, properties) }, &mut disk), disk.paths)
 }
@@ -232,7 +269,12 @@ pub(super) fn parse_or_tell(
 
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
-    let mut disk = Disk { model, paths: Vec::new() };
+    load_with(model, properties, None)
+}
+
+/// The same where the text of the scenario may be written for the call.
+pub(super) fn load_with(model: &Model, properties: &[String], written: Option<String>) -> Loaded {
+    let mut disk = Disk { model, written, paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     let mut inputs = if twice { Inputs::default() } else { compile(names(model, properties), &mut disk) };
     let mut errors = Vec::new();

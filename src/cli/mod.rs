@@ -16,6 +16,7 @@ mod manual;
 mod measure;
 mod merge;
 mod misuse;
+mod outcomes;
 mod output;
 mod page;
 mod parts;
@@ -54,6 +55,13 @@ pub fn run() -> process::ExitCode {
     if let Verb::Merge(command) = &mut arguments.verb {
         // Options may stand anywhere, so the folder is whatever comes last.
         command.folder = command.questions.properties.pop().unwrap_or_default().into();
+    }
+    if let Verb::Check(command) = &mut arguments.verb
+        && let Some(table) = &command.outcomes
+    {
+        // The table stands in the place of the scenario, and the first property file where that would.
+        let first = std::mem::replace(&mut command.questions.model.scenario, table.clone());
+        command.questions.properties.insert(0, first);
     }
     let asked = match &arguments.verb {
         Verb::Check(check) => Some(&check.questions),

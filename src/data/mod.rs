@@ -8,4 +8,5 @@ pub mod mocap;
 pub mod outcomes;
 pub mod table;
 pub mod tracks;
+pub mod trials;
 pub mod walks;

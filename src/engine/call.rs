@@ -29,6 +29,8 @@ pub struct Call<'c> {
 pub struct CommandLine {
     /// The scenario; also its name in reports where it has no title.
     pub scenario: String,
+    /// Whether a table of outcomes stands in its place.
+    pub outcomes: bool,
     /// Property files.
     pub properties: Vec<String>,
     /// Values of `--set`: `density=0.8`, or a sweep, `density=0.1..0.8 by 0.1`, `n=2,4,8`.
@@ -76,7 +78,9 @@ impl CommandLine {
 
     /// The call up to its other options, as a shell would take it.
     fn words(&self, verb: &str, keep: impl Fn(&str) -> bool) -> String {
-        let mut words = vec!["smc".to_owned(), verb.to_owned(), file(&self.scenario)];
+        let mut words = vec!["smc".to_owned(), verb.to_owned()];
+        words.extend(self.outcomes.then(|| "--outcomes".to_owned()));
+        words.push(file(&self.scenario));
         if verb != "simulate" {
             words.extend(self.properties.iter().map(|name| file(name)));
         }
@@ -136,6 +140,7 @@ mod tests {
     fn a_setting_replaces_that_of_the_call_for_the_same_parameter() {
         let line = CommandLine {
             scenario: "a.scn".into(),
+            outcomes: false,
             properties: vec!["a.bltl".into()],
             settings: vec!["n=2".into(), "d=0.1..0.8 by 0.1".into(), "gap=1 m".into()],
             data: vec!["my data".into()],

@@ -31,6 +31,7 @@ pub use flaw::Flaw;
 pub use sampling::watch::{CallForecast, Forecast, Likely, Nobody, Watch};
 pub use session::{forecast, run};
 pub use trials::executor::{Executor, Threads};
+pub use trials::outcomes::Outcomes;
 pub use trials::placement::{overfull_starts, placeable};
 pub use trials::prepared::PreparedWorld;
 pub use witness::cause::{divergence, no_start, smaller};

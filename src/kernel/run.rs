@@ -168,6 +168,13 @@ impl<'p> Run<'p> {
         }
     }
 
+    /// The variables of processes of a trial alone, in their order.
+    pub fn put(&mut self, values: &[f64]) {
+        for (variable, value) in self.state.variables.iter_mut().zip(values) {
+            variable.0[0] = *value;
+        }
+    }
+
     /// A trial alone that continues from one of its states.
     pub fn from_state(program: &'p Program, state: State) -> Self {
         Self { state, ..Self::new(program) }

@@ -8,7 +8,7 @@ use crate::logic::{
     AtomId, Invalid, Monitor, Needs, Operation, Part, Robustness, Root, SignalId, SignalMonitor,
     SignalRobustness, Term, TermId, Tree, leaves,
 };
-use crate::model::{Bool, Num};
+use crate::model::{Bool, Num, VariableId};
 use std::collections::BTreeSet;
 
 /// What is run, and what is read from each trace.
@@ -147,6 +147,19 @@ impl Setup {
             signals[signal.0 as usize] = self.signals[signal.0 as usize].clone();
         }
         (atoms, signals)
+    }
+
+    /// The variables of processes that a column reads.
+    pub fn variables(&self, column: usize) -> BTreeSet<VariableId> {
+        let (atoms, signals) = self.leaves(&[column]);
+        let mut found = BTreeSet::new();
+        for atom in atoms {
+            self.atoms[atom.0 as usize].reads(&mut found);
+        }
+        for signal in signals {
+            self.signals[signal.0 as usize].reads(&mut found);
+        }
+        found
     }
 
     /// The atoms and signals that some columns use. A tree that no monitor accepts uses none.

@@ -12,7 +12,7 @@ use crate::compile::lower::{form, logic, robustness};
 use crate::compile::query::watched;
 use crate::compile::study::{Column, MeasureKind};
 use crate::logic::{Node, NodeId, Part, Relation, Root, Sought, Term, TermId, leaves, looks_ahead};
-use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
+use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment, ProcessItem};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -121,7 +121,10 @@ pub(crate) fn formula_column(
 
 /// Warns of a formula without a temporal operator.
 fn warn_of_first_state(context: &mut Context<'_>, node: NodeId, span: Span) {
-    if !reads_states(context, node) || looks_ahead(&context.observed.tree, Part::Node(node)).unwrap_or(true) {
+    if is_still(context)
+        || !reads_states(context, node)
+        || looks_ahead(&context.observed.tree, Part::Node(node)).unwrap_or(true)
+    {
         return;
     }
     let (text, bound) = (context.text(span), context.time.whole());
@@ -134,6 +137,13 @@ fn warn_of_first_state(context: &mut Context<'_>, node: NodeId, span: Span) {
     let warning = Diagnostic::warning(Code::W0502, span, "the value of the first state is used")
         .hint(format!("write `G<={bound} {inner}` for all states, or `F<={bound} {inner}` for some state"));
     context.note(warning);
+}
+
+/// Whether nothing ever changes: nobody is there, and no process has a command. All states are the first one.
+fn is_still(context: &Context<'_>) -> bool {
+    let is_command = |item: &ProcessItem| matches!(item, ProcessItem::Command(_));
+    context.roster.agent_names.is_empty()
+        && !context.processes.iter().any(|process| process.decl.items.iter().any(is_command))
 }
 
 /// Whether a formula reads any state. One that is refused for its shape counts as if it did.
@@ -162,7 +172,7 @@ fn metric(context: &mut Context<'_>, body: &Expr, scope: ScopeId) -> Lowered<(Te
     match (moment, at?) {
         (Some(Moment::Time(_)), Some(Some(tick))) => term = context.term(Term::Later(tick, term)),
         (Some(_), _) => term = context.term(Term::AtEnd(term)),
-        (None, _) if of_state => {
+        (None, _) if of_state && !is_still(context) => {
             let warning = Diagnostic::warning(Code::W0502, body.span, "the value of the first state is used")
                 .hint("write `… at end`, `… at 5 s`, or an aggregate such as `max<=10 s (…)`");
             context.note(warning);

@@ -2,6 +2,7 @@
 
 pub mod executor;
 pub mod given;
+pub mod outcomes;
 pub(in crate::engine) mod placement;
 pub mod prepared;
 pub mod sample;
