@@ -141,10 +141,7 @@ impl Cells {
                 || share.pairs(simd, &around, (term, plane), of),
             );
         };
-        match shares.as_mut_slice() {
-            [all] => work(all),
-            some => some.par_iter_mut().with_max_len(1).for_each(work),
-        }
+        on_each(shares, &work);
     }
 
     /// Hands the forces to the agents.
@@ -175,6 +172,15 @@ impl Cells {
                 *most = if slowness > *most { slowness } else { *most };
             }
         }
+    }
+}
+
+/// Works on each share, on a thread of its own where there are several. Not generic: else the pool is compiled for each
+/// combination of terms and width of vectors, which takes a quarter of the build.
+fn on_each(shares: &mut [Share], work: &(dyn Fn(&mut Share) + Sync)) {
+    match shares {
+        [all] => work(all),
+        some => some.par_iter_mut().with_max_len(1).for_each(work),
     }
 }
 

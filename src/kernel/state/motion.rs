@@ -75,9 +75,18 @@ impl State {
     ) -> Mask {
         let Self { layout, motion, present, bodies, driving, queues, .. } = self;
         let still = Still { layout: *layout, present, bodies, driving, queues };
-        each(simd, threads, (0, motion.fields()), &still, &work)
+        let some = |(first, fields): Blocks<'_>| {
+            simd.vectorize(
+                #[inline(always)]
+                || each((first, fields), &still, &work),
+            )
+        };
+        if threads > 1 { shared(threads, (0, motion.fields()), &some) } else { some((0, motion.fields())) }
     }
 }
+
+/// Some blocks of each field, and the number of the first.
+type Blocks<'a> = (usize, [&'a mut [Lanes]; 8]);
 
 /// The motion of one block.
 pub(in crate::kernel) struct Moves<'a> {
@@ -91,18 +100,13 @@ pub(in crate::kernel) struct Moves<'a> {
     pub(in crate::kernel) travelled: &'a mut Lanes,
 }
 
-/// Works on some blocks, of which the first has a number.
+/// Works on some blocks.
 #[inline(always)]
-fn each<S: Simd>(
-    simd: S,
-    threads: usize,
-    (first, fields): (usize, [&mut [Lanes]; 8]),
+fn each(
+    (first, fields): Blocks<'_>,
     still: &Still<'_>,
-    work: &(impl Fn(&Still<'_>, usize, Moves<'_>) -> Mask + Sync),
+    work: &impl Fn(&Still<'_>, usize, Moves<'_>) -> Mask,
 ) -> Mask {
-    if threads > 1 {
-        return shared(simd, threads, (first, fields), still, work);
-    }
     // Of one length, so that one comparison shows that all are long enough.
     let count = fields[0].len();
     let [x, y, vx, vy, fx, fy, slowness, travelled] = fields.map(|field| &mut field[..count]);
@@ -123,14 +127,11 @@ fn each<S: Simd>(
     found
 }
 
-/// The same on more than one thread.
-fn shared<S: Simd>(
-    simd: S,
-    threads: usize,
-    (first, fields): (usize, [&mut [Lanes]; 8]),
-    still: &Still<'_>,
-    work: &(impl Fn(&Still<'_>, usize, Moves<'_>) -> Mask + Sync),
-) -> Mask {
+/// Shares blocks among threads. Not generic, as the pool would be compiled for each kind of work.
+fn shared(threads: usize, (first, fields): Blocks<'_>, work: &(dyn Fn(Blocks<'_>) -> Mask + Sync)) -> Mask {
+    if threads == 1 {
+        return work((first, fields));
+    }
     let (few, middle) = (threads / 2, fields[0].len() * (threads / 2) / threads);
     let mut rest: [&mut [Lanes]; 8] = Default::default();
     let mut rests = rest.iter_mut();
@@ -141,12 +142,9 @@ fn shared<S: Simd>(
         }
         start
     });
-    let go = |threads, part| {
-        simd.vectorize(
-            #[inline(always)]
-            || each(simd, threads, part, still, work),
-        )
-    };
-    let (one, other) = rayon::join(|| go(few, (first, start)), || go(threads - few, (first + middle, rest)));
+    let (one, other) = rayon::join(
+        || shared(few, (first, start), work),
+        || shared(threads - few, (first + middle, rest), work),
+    );
     one | other
 }
