@@ -14,6 +14,7 @@ use smc::base::geometry::{Segment, Vec2};
 use smc::base::lanes::Mask;
 use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
+use smc::engine::Threads;
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
 use smc::model::{
     Agent, Barrier, Body, Family, Kind, Law, Obstacle, Parameter, Route, Scenario, Scene as Surroundings,
@@ -21,7 +22,6 @@ use smc::model::{
 };
 use std::io::Write;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 struct SplitMix64(u64);
@@ -419,7 +419,7 @@ fn main() {
     }
     let threads_of = |word: &str| word.strip_prefix("threads=").and_then(|count| count.parse().ok());
     let threads: usize = words.iter().find_map(|word| threads_of(word)).unwrap_or(1);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = Threads::new(Some(threads)).unwrap();
     let is_option = |word: &str| {
         threads_of(word).is_some()
             || level(word).is_some()
@@ -451,22 +451,8 @@ fn main() {
                     continue;
                 }
                 for &level in &levels {
-                    let (rate, state) = {
-                        let done = AtomicBool::new(false);
-                        let found = pool.broadcast(|thread| {
-                            if thread.index() == 0 {
-                                let found = measure(&scene, layout, walk, level, threads);
-                                done.store(true, Ordering::Relaxed);
-                                return Some(found);
-                            }
-                            while !done.load(Ordering::Relaxed) {
-                                rayon::yield_now();
-                                std::hint::spin_loop();
-                            }
-                            None
-                        });
-                        found.into_iter().flatten().next().unwrap()
-                    };
+                    let work = || measure(&scene, layout, walk, level, threads);
+                    let (rate, state) = pool.helped(work).unwrap();
                     let checksum: f64 = state.motion.x.iter().flat_map(|lanes| lanes.0).sum();
                     let name = format!("{level:?}");
                     let name = name.split('(').next().unwrap_or_default();
