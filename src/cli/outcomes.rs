@@ -143,14 +143,7 @@ impl Given {
         if let Some(reason) = outcomes.error() {
             return Err(vec![wrong(&name, &reason)]);
         }
-        let columns = study.worlds.first().map_or(&[][..], |world| &world.columns);
-        for (column, [count, runs, mean]) in outcomes.dependent() {
-            run.warnings.push(format!(
-                "outcomes of `{}` depend on each other: {count} of them have {runs} runs of equal ones, independent ones \
-                 about {mean:.0}; errors of the results may be larger than stated",
-                columns.get(column).map_or("", |column| column.text.as_str())
-            ));
-        }
+        run.warnings.extend(outcomes.dependence.warnings(study));
         Ok(run)
     }
 

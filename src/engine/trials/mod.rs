@@ -1,5 +1,6 @@
 //! Worlds made ready to run, and the executors that run trials in them.
 
+pub mod dependence;
 pub mod executor;
 pub mod given;
 pub mod outcomes;

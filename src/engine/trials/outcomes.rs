@@ -3,6 +3,7 @@
 
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
+use crate::engine::trials::dependence::Dependence;
 use crate::engine::trials::executor::{Cells, Executor, Job, Threads};
 use crate::kernel::Run;
 use crate::logic::Invalid;
@@ -11,14 +12,9 @@ use crate::trials::batch::Monitors;
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Item, Reading};
 use crate::trials::columns::StepColumns;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Fewer outcomes show no dependence, and such a distance from what independent ones have, in standard deviations, does:
-/// by chance it comes in one of 16 000 columns.
-const FEWEST: u64 = 40;
-const FAR: f64 = 4.0;
 
 /// Reads the values of the next trial, NaN for those that it lacks; `None` after the last one.
 pub type Source<'a> = dyn FnMut() -> Result<Option<Vec<f64>>, String> + Send + 'a;
@@ -29,6 +25,8 @@ pub struct Outcomes<'a> {
     /// Trials that are asked for at a time.
     width: usize,
     known: Mutex<Known<'a>>,
+    /// What the outcomes tell of their independence.
+    pub dependence: Dependence,
 }
 
 /// Rows that were read.
@@ -37,40 +35,6 @@ struct Known<'a> {
     rows: Vec<Vec<f64>>,
     is_over: bool,
     error: Option<String>,
-    /// Runs of equal truth values in the trials of a column, as far as they were looked at.
-    runs: BTreeMap<usize, Runs>,
-}
-
-/// Runs of equal truth values.
-#[derive(Clone, Copy, Debug, Default)]
-struct Runs {
-    /// Trials that were looked at.
-    next: u64,
-    last: Option<bool>,
-    counts: [u64; 2],
-    /// How many runs they make.
-    found: u64,
-}
-
-impl Runs {
-    fn see(&mut self, truth: bool) {
-        self.found += u64::from(self.last != Some(truth));
-        self.counts[usize::from(truth)] += 1;
-        self.last = Some(truth);
-    }
-
-    /// How far the number of runs is from its mean under independence, in standard deviations (Wald, Wolfowitz 1940).
-    fn distance(&self) -> f64 {
-        let [a, b] = self.counts.map(|count| count as f64);
-        let n = a + b;
-        let mean = 2.0 * a * b / n + 1.0;
-        let variance = (mean - 1.0) * (mean - 2.0) / (n - 1.0);
-        if a + b >= FEWEST as f64 && variance > 1.0 {
-            (self.found as f64 - mean) / variance.sqrt()
-        } else {
-            0.0
-        }
-    }
 }
 
 impl Known<'_> {
@@ -89,8 +53,8 @@ impl Known<'_> {
 impl<'a> Outcomes<'a> {
     /// Of a source of rows, of which `width` are asked for at a time.
     pub fn new(source: Box<Source<'a>>, width: usize, threads: &'a Threads) -> Self {
-        let known = Known { source, rows: Vec::new(), is_over: false, error: None, runs: BTreeMap::new() };
-        Self { threads, width, known: Mutex::new(known) }
+        let known = Known { source, rows: Vec::new(), is_over: false, error: None };
+        Self { threads, width, known: Mutex::new(known), dependence: Dependence::default() }
     }
 
     fn known(&self) -> MutexGuard<'_, Known<'a>> {
@@ -100,18 +64,6 @@ impl<'a> Outcomes<'a> {
     /// Why reading ended before the last row, if it did.
     pub fn error(&self) -> Option<String> {
         self.known().error.clone()
-    }
-
-    /// Columns whose outcomes are not independent, as the number of runs of equal ones tells: outcomes, runs, and the mean
-    /// number of runs of independent ones.
-    pub fn dependent(&self) -> Vec<(usize, [f64; 3])> {
-        let known = self.known();
-        let far = known.runs.iter().filter(|(_, runs)| runs.distance().abs() > FAR);
-        far.map(|(column, runs)| {
-            let [a, b] = runs.counts.map(|count| count as f64);
-            (*column, [a + b, runs.found as f64, 2.0 * a * b / (a + b) + 1.0])
-        })
-        .collect()
     }
 }
 
@@ -140,17 +92,13 @@ impl Executor for Outcomes<'_> {
         let width = job.columns.len();
         let mut found = monitors.take().cells;
         for (place, (row, item)) in found.chunks_exact_mut(width.max(1)).zip(items).enumerate() {
-            for ((cell, read), column) in row.iter_mut().zip(&read).zip(&job.columns) {
+            for (cell, read) in row.iter_mut().zip(&read) {
                 let values = &known.rows[item.index as usize];
                 if read.iter().any(|variable| values[variable.0 as usize].is_nan()) {
                     cell.reading = Reading::Unresolved;
                 }
-                let runs = known.runs.entry(*column).or_default();
-                if runs.next == item.index {
-                    runs.next += 1;
-                    cell.reading.truth().into_iter().for_each(|truth| runs.see(truth));
-                }
             }
+            self.dependence.see(job, *item, row);
             cells.put(place, row);
         }
         Ok(cells)
