@@ -54,6 +54,7 @@ mod planned;
 mod plans;
 mod processes;
 mod program;
+mod programs;
 mod queries;
 mod rankings;
 mod refusals;

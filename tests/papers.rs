@@ -40,8 +40,15 @@ fn is_quoted(wanted: &str, line: &str) -> bool {
 /// Runs the blocks of a page and compares what is quoted after each.
 fn run(page: &str) {
     let place = Place::new(&[]);
-    for folder in ["models", "properties", "examples/papers", "examples/advise", "examples/cookbook", "gaits"]
-    {
+    for folder in [
+        "models",
+        "properties",
+        "examples/papers",
+        "examples/advise",
+        "examples/cookbook",
+        "examples/programs",
+        "gaits",
+    ] {
         copied(&root().join(folder), &place.path(folder));
     }
     let text = read_to_string(root().join("docs").join(page)).unwrap();
@@ -108,7 +115,7 @@ fn commands_of_the_pages_behind_it_do_what_they_say() {
 
 #[test]
 fn commands_of_the_first_pages_do_what_they_say() {
-    for page in ["tutorial.md", "README.md", "buildings.md", "outcomes.md"] {
+    for page in ["tutorial.md", "README.md", "buildings.md", "outcomes.md", "programs.md"] {
         run(page);
     }
 }

@@ -198,7 +198,7 @@ pub(super) struct Check {
     #[arg(
         long,
         value_name = "TABLE",
-        conflicts_with_all = ["launch", "forecast", "timeout", "set", "data", "models", "calibration", "velocity"]
+        conflicts_with_all = ["launch", "forecast", "timeout", "set", "data", "models", "calibration", "velocity", "allow_run"]
     )]
     pub(super) outcomes: Option<String>,
 }

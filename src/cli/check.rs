@@ -15,7 +15,10 @@ use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::Origin;
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{Budget, Call, CallForecast, CommandLine, Outcomes, forecast, run as run_study};
+use crate::engine::{
+    Budget, Call, CallForecast, CommandLine, Executor, Outcomes, Watched, forecast, run as run_study,
+};
+use crate::library::program::playing;
 use crate::model::Scenario;
 use crate::report::html::Page;
 use crate::report::{ExitCode as Exit, Format, Palette};
@@ -96,6 +99,13 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         return reporter.refuse_for(&doubts);
     }
     reporter.warn(&doubts);
+    let programs = match inputs::programs(&arguments.model, study, {
+        let budget = Arc::clone(&budget);
+        move || budget.is_late()
+    }) {
+        Ok(programs) => programs,
+        Err(error) => return reporter.refuse(error),
+    };
     if let Some(Err(error)) = given.as_ref().map(|given| given.settle(study)) {
         return reporter.refuse(error);
     }
@@ -116,7 +126,9 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         Err(error) => return reporter.refuse(error),
     };
     let place = |span: Span| locate(&inputs.sources, span);
-    let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let players = programs.clone();
+    let drivers =
+        move |scenario: &Scenario, seed: u64| playing(gait::drivers(&ways, scenario, seed), players.as_ref());
     let call = || Call {
         seed: arguments.seed,
         branch: 0,
@@ -140,8 +152,15 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         let work = |outcomes: &Outcomes<'_>| run_study(study, &call(), outcomes, &budget, &progress);
         given.run(&scenario, study, &executor, work).map(Some)
     } else if let Way::Check(Check { launch: None, .. }) = way {
-        let run = run_study(study, &call(), &executor, &budget, &progress);
-        run.map(Some).map_err(|fault| library::refusals(&fault))
+        // Trials of the kernel are independent; those of another program are watched.
+        let watched = Watched::new(&executor);
+        let own: &dyn Executor = if programs.is_some() { &watched } else { &executor };
+        let run = run_study(study, &call(), own, &budget, &progress).map(|mut run| {
+            run.warnings.extend(watched.dependence.warnings(study));
+            run.warnings.extend(programs.iter().flat_map(|programs| programs.doubts()));
+            Some(run)
+        });
+        run.map_err(|fault| library::refusals(&fault))
     } else {
         let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
         let mut rounds = Rounds {

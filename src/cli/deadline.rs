@@ -6,6 +6,7 @@ use super::output;
 use super::terminal::Colors;
 use super::values::Limit;
 use crate::engine::Budget;
+use crate::library::program;
 use crate::report::ExitCode as Exit;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
@@ -40,8 +41,14 @@ pub(super) fn limit(limit: Limit, colors: Colors) {
         std::thread::sleep(time);
         complaint::tell(&complaint::late(""), &[], colors);
         output::leave_nothing();
-        std::process::exit(i32::from(Exit::Undecided.code()));
+        leave(Exit::Undecided);
     });
+}
+
+/// Ends the process, and the programs that it runs.
+pub(super) fn leave(exit: Exit) -> ! {
+    program::end_all();
+    std::process::exit(i32::from(exit.code()))
 }
 
 /// The phase of a call, for the threads that can end it. The thread that holds the lock while the call prepares ends it.
@@ -59,13 +66,13 @@ impl Deadline {
             let phase = match own.0.try_lock() {
                 Ok(phase) => phase,
                 Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-                Err(TryLockError::WouldBlock) => std::process::exit(i32::from(Exit::Interrupted.code())),
+                Err(TryLockError::WouldBlock) => leave(Exit::Interrupted),
             };
             match *phase {
-                Phase::Preparing => std::process::exit(i32::from(on_signal(Ended::Interrupted).code())),
+                Phase::Preparing => leave(on_signal(Ended::Interrupted)),
                 Phase::Sampling if !signalled.is_interrupted() => signalled.interrupt(),
                 Phase::Sampling | Phase::Printing => {
-                    std::process::exit(i32::from(Exit::Interrupted.code()));
+                    leave(Exit::Interrupted);
                 }
             }
         });
@@ -77,7 +84,7 @@ impl Deadline {
                 std::thread::sleep(Duration::from_secs_f64(left).saturating_add(grace));
                 let phase = own.lock();
                 if *phase == Phase::Preparing {
-                    std::process::exit(i32::from(end(Ended::Late).code()));
+                    leave(end(Ended::Late));
                 }
             });
         }

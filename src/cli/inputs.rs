@@ -5,13 +5,15 @@ use super::terminal::Colors;
 use super::values::Model;
 use crate::compile::{Study, matches};
 use crate::engine::outcome::{Finding, Spot};
-use crate::library::{Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
+use crate::library::program::Programs;
+use crate::library::{self, Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Most bytes of one input.
 const MOST_BYTES: u64 = 256 << 20;
@@ -292,6 +294,22 @@ pub(super) fn load_with(model: &Model, properties: &[String], written: Option<St
         inputs.diagnostics.extend(errors);
     }
     Loaded { inputs, paths: disk.paths }
+}
+
+/// The programs of a call, if it has one that may run; `is_over` says when those under way are given up.
+pub(super) fn programs(
+    model: &Model,
+    study: &Study,
+    is_over: impl Fn() -> bool + Send + Sync + 'static,
+) -> Result<Option<Arc<Programs>>, Diagnostic> {
+    match library::program::unallowed(study) {
+        Some(error) if !model.allow_run => Err(error),
+        Some(_) => {
+            let folder = Path::new(&model.scenario).parent().unwrap_or(Path::new(""));
+            Ok(Some(Arc::new(Programs::new(folder, is_over))))
+        }
+        None => Ok(None),
+    }
 }
 
 /// The same, and says what is wrong; none where nothing can be run.

@@ -29,6 +29,7 @@ pub(super) fn line(model: &Model) -> CommandLine {
         data: model.data.iter().map(|data| data.display().to_string()).collect(),
         velocity: model.velocity.map(|velocity| velocity.name().to_owned()),
         models: model.models.clone(),
+        allow_run: model.allow_run,
         ..CommandLine::default()
     }
 }

@@ -8,7 +8,7 @@ use super::{complaint, inputs};
 use crate::engine::Budget;
 use crate::engine::shards::{Origin, Unit, run as run_shard};
 use crate::gait;
-use crate::library;
+use crate::library::{self, program::playing};
 use crate::model::Scenario;
 use crate::report::ExitCode as Exit;
 use crate::route::Ways;
@@ -44,7 +44,12 @@ pub(super) fn run(arguments: &ShardCommand, colors: Colors) -> Exit {
         let signalled = Arc::clone(&budget);
         let _ = ctrlc::set_handler(move || signalled.interrupt());
         let threads = threads(Some(arguments.threads))?;
-        let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+        let budget_of_programs = Arc::clone(&budget);
+        let programs = inputs::programs(&arguments.model, &study, move || budget_of_programs.is_late())?;
+        let players = programs.clone();
+        let drivers = move |scenario: &Scenario, seed: u64| {
+            playing(gait::drivers(&ways, scenario, seed), players.as_ref())
+        };
         let part = run_shard(&study, (&plan, arguments.index), &drivers, &threads, &budget);
         let part = part.map_err(|fault| library::refusals(&fault))?;
         let Some(part) = part else { return Ok(Exit::Interrupted) };

@@ -66,6 +66,9 @@ pub(super) struct Model {
     /// how often such verdicts were true.
     #[arg(long, value_name = "FILE")]
     pub(super) calibration: Option<String>,
+    /// Let the program of a scenario run, which nothing but a trial ever does.
+    #[arg(long)]
+    pub(super) allow_run: bool,
     /// `seen`: velocities of recorded people are differences from their last positions; `recorded`: those of the file. Unless
     /// set, as the tracks say, or else recorded; `advise`, `evaluate` and `fit` take those that are seen.
     #[arg(long, value_name = "WHICH", value_parser = parse_velocity)]

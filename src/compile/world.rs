@@ -22,10 +22,10 @@ use crate::compile::lower::{
     call, defaults,
 };
 use crate::compile::people::{self, groups, kinds, places, routes, sources, step, stepping, tracks};
-use crate::compile::process;
+use crate::compile::process::{self, program};
 use crate::compile::scene::{self, periodic};
 use crate::model::{BehaviourId, BuiltIn, Kind, Scenario};
-use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Item, LetDecl, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{About, Diagnostic};
 use crate::syntax::source::{Source, Span};
@@ -84,6 +84,16 @@ fn declare<'a>(context: &mut Context<'a>, file: &'a ScenarioFile) {
                 (&decl.name, Meaning::Behaviour(id))
             }
             Item::Source(decl) => (&decl.name, Meaning::Declared),
+            Item::Program(decl) => {
+                for signal in &decl.signals {
+                    entry::enter(context, &signal.name, Meaning::Let(signal));
+                }
+                if let Some(people) = &decl.people {
+                    entry::enter(context, &people.name, Meaning::Declared);
+                }
+                context.processes.push(Declared { is_played: true, ..Declared::new(&decl.process) });
+                (&decl.process.name, Meaning::Process(context.processes.len() as u32 - 1))
+            }
         };
         let reserved = match (&meaning, name.name.as_str()) {
             (Meaning::Kind(_), name) => {
@@ -187,13 +197,16 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
     routes::leave_by_moves(context, file);
     let mut sources = people::never_arriving(context, &people);
     for item in &file.items {
-        if let Item::Source(decl) = item {
-            sources.extend(sources::source(context, decl, &mut people));
+        match item {
+            Item::Source(decl) => sources.extend(sources::source(context, decl, &mut people)),
+            Item::Program(decl) => sources.extend(program::shown(context, decl, &mut people)),
+            _ => {}
         }
     }
     scene::doors::check(context, &doors, &people.agents);
     let count = variables.len();
-    let processes = process::settle_commands(context, variables, &mut people);
+    let mut processes = process::settle_commands(context, variables, &mut people);
+    processes.outside = program::program(context, file, &sources);
     let behaviours = behaviour::settle_behaviours(context, &mut people, count);
     let moves = routes::all_moves(context, file, &people);
     check_unused(context, file);
@@ -271,18 +284,21 @@ fn check_unused<'a>(context: &mut Context<'a>, file: &'a ScenarioFile) {
             Item::Kind(decl) => {
                 let _ = kinds::own_kind(context, decl);
             }
-            Item::Let(decl) => {
-                context.temporal = true;
-                if decl.arguments.is_empty() {
-                    let _ = lower_declared(context, &decl.name, &decl.body);
-                } else {
-                    call::look_into(context, decl, &locals);
-                }
-                context.temporal = false;
-            }
+            Item::Let(decl) => check_let(context, decl, &locals),
+            Item::Program(decl) => decl.signals.iter().for_each(|one| check_let(context, one, &locals)),
             _ => {}
         }
     }
+}
+
+fn check_let<'a>(context: &mut Context<'a>, decl: &'a LetDecl, locals: &Locals) {
+    context.temporal = true;
+    if decl.arguments.is_empty() {
+        let _ = lower_declared(context, &decl.name, &decl.body);
+    } else {
+        call::look_into(context, decl, locals);
+    }
+    context.temporal = false;
 }
 
 /// The range of a parameter, and whether its default lies in it.

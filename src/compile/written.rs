@@ -43,6 +43,7 @@ pub(crate) fn written(context: &Context<'_>, file: &ScenarioFile) -> Written {
             }
             Item::Let(decl) => out.names.push(written_let(context, decl)),
             Item::Process(decl) => out.processes.push(written_process(context, decl)),
+            Item::Program(decl) => out.names.extend(decl.signals.iter().map(|one| written_let(context, one))),
             Item::Behaviour(decl) => {
                 out.arguments.push(decl.arguments.iter().map(|name| name.name.clone()).collect());
                 let states = decl.items.iter().filter_map(|item| match item {

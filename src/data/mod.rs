@@ -6,6 +6,7 @@
 pub mod geometry;
 pub mod mocap;
 pub mod outcomes;
+pub mod rows;
 pub mod table;
 pub mod tracks;
 pub mod trials;

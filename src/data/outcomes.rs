@@ -90,7 +90,7 @@ impl Outcomes {
 }
 
 /// The beginning of what stands in a cell, fit to be printed.
-fn brief(cell: &str) -> String {
+pub(super) fn brief(cell: &str) -> String {
     const MOST: usize = 40;
     let start: String = cell.chars().take(MOST).flat_map(char::escape_debug).collect();
     if cell.chars().nth(MOST).is_some() { start + "…" } else { start }

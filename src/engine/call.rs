@@ -31,6 +31,8 @@ pub struct CommandLine {
     pub scenario: String,
     /// Whether a table of outcomes stands in its place.
     pub outcomes: bool,
+    /// Whether a program of the scenario may run.
+    pub allow_run: bool,
     /// Property files.
     pub properties: Vec<String>,
     /// Values of `--set`: `density=0.8`, or a sweep, `density=0.1..0.8 by 0.1`, `n=2,4,8`.
@@ -80,6 +82,7 @@ impl CommandLine {
     fn words(&self, verb: &str, keep: impl Fn(&str) -> bool) -> String {
         let mut words = vec!["smc".to_owned(), verb.to_owned()];
         words.extend(self.outcomes.then(|| "--outcomes".to_owned()));
+        words.extend(self.allow_run.then(|| "--allow-run".to_owned()));
         words.push(file(&self.scenario));
         if verb != "simulate" {
             words.extend(self.properties.iter().map(|name| file(name)));
@@ -141,6 +144,7 @@ mod tests {
         let line = CommandLine {
             scenario: "a.scn".into(),
             outcomes: false,
+            allow_run: false,
             properties: vec!["a.bltl".into()],
             settings: vec!["n=2".into(), "d=0.1..0.8 by 0.1".into(), "gap=1 m".into()],
             data: vec!["my data".into()],

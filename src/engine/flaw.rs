@@ -69,11 +69,21 @@ impl Flaw {
                 command(process, 0),
                 "let the command change its own guard, or give it a positive delay",
             ),
+            process::Fault::Unrepeated => (
+                Code::E0915,
+                origins.program,
+                "draw all random numbers from `{seed}`, and read neither the clock nor what another trial wrote",
+            ),
+            process::Fault::Unstarted { .. } => {
+                (Code::E0916, origins.program, "write the name of a program that can be run, or a path to it")
+            }
             process::Fault::Change { attached, .. } => {
                 (Code::E0914, behaviour(attached), "limit the value: `max(0.1 m/s, …)`")
             }
         };
-        let state = process::Fault::state(&scenario.processes, value);
+        let is_outside = scenario.processes.outside.is_some();
+        let state =
+            if is_outside { String::new() } else { process::Fault::state(&scenario.processes, value) };
         Self { code, place, moment, what: fault.describe(scenario), state, hint }
     }
 }

@@ -55,6 +55,13 @@ pub enum Fault {
         /// Its value, SI units.
         value: f64,
     },
+    /// A program elsewhere gives something else when it runs again.
+    Unrepeated,
+    /// A program elsewhere cannot be started.
+    Unstarted {
+        /// What the system says.
+        why: std::io::ErrorKind,
+    },
 }
 
 /// The first error of each lane in one step.
@@ -129,6 +136,14 @@ impl Fault {
             }
             Self::Change { attached, parameter, value } => {
                 format!("{} sets `{}` to {value}, which is invalid", whose(attached), parameter.name())
+            }
+            Self::Unrepeated => {
+                "the program gave another trace when it ran again with the same words".to_owned()
+            }
+            Self::Unstarted { why } => {
+                let call = processes.outside.as_ref().map_or(String::new(), |outside| outside.told());
+                let program = call.split(' ').next().unwrap_or_default();
+                format!("`{program}` cannot be started: {why}")
             }
             Self::Range { variable, value } => {
                 let Some(variable) = processes.variables.get(variable as usize) else { return String::new() };

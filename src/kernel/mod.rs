@@ -33,6 +33,7 @@ pub mod run;
 mod speed;
 pub mod start;
 pub mod state;
+pub mod tape;
 mod vector;
 
 pub use code::{Code, Readings, Voronoi};

@@ -62,7 +62,9 @@ impl Program {
 
     /// Prepares a scenario with the drivers of a run.
     pub fn driven(scenario: Arc<Scenario>, drivers: Drivers) -> Self {
-        let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
+        // What is played back is one trial at a time.
+        let is_alone = scenario.agents.len() > LARGEST_IN_LANES || scenario.processes.outside.is_some();
+        let layout = if is_alone { Layout::Agents } else { Layout::Trials };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
         let noise = Noise::new(&scenario);
@@ -93,7 +95,8 @@ impl Program {
 
     /// Whether threads may share one trial (`Run::share`).
     pub fn is_large(&self) -> bool {
-        self.layout == Layout::Agents && self.scenario.agents.len() > LARGE
+        let moves = self.layout == Layout::Agents && self.scenario.processes.outside.is_none();
+        moves && self.scenario.agents.len() > LARGE
     }
 }
 

@@ -10,6 +10,7 @@ use super::process;
 use super::program::Program;
 use super::start::{self, Loaded};
 use super::state::{Slot, State};
+use super::tape::Unplayed;
 use super::{Close, Layout, driver};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -18,6 +19,7 @@ use crate::base::tick::Tick;
 use crate::model::AgentId;
 use fearless_simd::Level;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// The address of a trial.
 #[derive(Clone, Copy, Debug, Default)]
@@ -215,6 +217,9 @@ impl<'p> Run<'p> {
     /// # Errors
     /// When the trial cannot start.
     pub fn load(&mut self, lane: usize, address: Address<'_>) -> Result<Loaded, start::Fault> {
+        if self.program.scenario.processes.outside.is_some() {
+            return self.load_tape(address);
+        }
         let loaded = start::load(&self.program, &mut self.state, lane, address.key, address.advice)?;
         self.changes[lane].clear();
         self.changes[lane].extend(address.changes.iter().rev());
@@ -223,9 +228,56 @@ impl<'p> Run<'p> {
         Ok(loaded)
     }
 
+    /// Loads a trial that a program elsewhere runs, and shows its first state.
+    fn load_tape(&mut self, address: Address<'_>) -> Result<Loaded, start::Fault> {
+        let Address { key, advice, .. } = address;
+        let program = self.program.as_ref();
+        let Some(player) = program.drive.player() else {
+            return Err(start::Fault::Program("the program was not allowed to run".into()));
+        };
+        let option = advice.and_then(|advice| program.scenario.move_name(advice));
+        let played = player.play(&program.scenario, key, option.as_deref());
+        let (tape, fault) = match played {
+            Ok(tape) => (tape, None),
+            Err(Unplayed::Failed(said)) => return Err(start::Fault::Program(said)),
+            Err(Unplayed::Wrong(fault)) => (Arc::default(), Some(fault)),
+        };
+        start::load_played(program, &mut self.state, key);
+        self.state.faulty |= if fault.is_some() { Mask::lane(0) } else { Mask::NONE };
+        self.state.faults[0] = fault;
+        self.state.tape = Some(tape);
+        self.play()?;
+        Ok(Loaded::default())
+    }
+
+    /// Shows the state of the present tick of a tape.
+    fn play(&mut self) -> Result<(), start::Fault> {
+        let Some(tape) = self.state.tape.clone() else { return Ok(()) };
+        let tick = self.state.ticks[0];
+        let seen = tape.seen(tick);
+        if let Some(people) = self.program.scenario.processes.outside.as_ref().and_then(|o| o.people.as_ref())
+        {
+            for one in seen {
+                let AgentId(agent) = people.members[one.place as usize];
+                let entered = &mut self.state.queues.entered[0][0];
+                if one.place >= *entered {
+                    *entered = one.place + 1;
+                    start::appear(&self.program, &mut self.state, agent as usize, one.position)?;
+                }
+            }
+            let mut all = vec![None; self.state.agents];
+            for one in seen {
+                all[people.members[one.place as usize].0 as usize] = Some((one.position, one.velocity));
+            }
+            self.show(tick, |AgentId(agent)| all[agent as usize]);
+        }
+        self.put(tape.variables(tick));
+        Ok(())
+    }
+
     /// Makes lanes that were just loaded ready.
     pub fn begin(&mut self, lanes: Mask) {
-        if !lanes.is_empty() {
+        if !lanes.is_empty() && self.state.tape.is_none() {
             dynamics::refresh(&self.program, &mut self.state, &mut self.scratch, lanes);
         }
     }
@@ -261,6 +313,9 @@ impl<'p> Run<'p> {
         if self.program.scenario.clock.is_jumps() {
             return self.jump();
         }
+        if self.state.tape.is_some() {
+            return self.advance_tape();
+        }
         for lane in (self.changing & self.state.occupied).iter() {
             let now = self.state.ticks[lane];
             while let Some((_, key)) = self.change(lane, |from| from <= now) {
@@ -268,6 +323,17 @@ impl<'p> Run<'p> {
             }
         }
         dynamics::step(&self.program, &mut self.state, &mut self.scratch);
+        self.state.occupied
+    }
+
+    /// The next state of a tape.
+    #[cold]
+    fn advance_tape(&mut self) -> Mask {
+        self.state.ticks[0] += 1;
+        // Whoever appears has a body that its place allows.
+        if self.play().is_err() {
+            self.state.diverged |= Mask::lane(0);
+        }
         self.state.occupied
     }
 
@@ -331,7 +397,7 @@ impl<'p> Run<'p> {
 
     /// Who may touch whom in the present state of a large crowd, where the kernel knows it.
     pub fn close(&self) -> Option<Close<'_>> {
-        self.scratch.close(&self.state)
+        self.scratch.close(&self.state).filter(|_| self.state.tape.is_none())
     }
 
     /// Reads the present states.

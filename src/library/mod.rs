@@ -11,6 +11,7 @@ mod model;
 mod models;
 mod options;
 mod paths;
+pub mod program;
 mod refusal;
 mod report;
 mod trial;

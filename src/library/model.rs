@@ -3,6 +3,7 @@
 use super::diagnostics::Diagnostics;
 use super::front::{Folder, Inputs, Names, load};
 use super::options::Options;
+use super::program::{Programs, playing, unallowed};
 use super::refusal::{refusal, refusals};
 use super::report::Report;
 use super::trial::Trial;
@@ -21,6 +22,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A scenario with what belongs to it, before it is parsed.
@@ -38,6 +40,8 @@ pub struct Draft {
     text: String,
     settings: Vec<(String, String)>,
     files: BTreeMap<String, Vec<u8>>,
+    /// Where a program of the scenario may run.
+    runs_in: Option<PathBuf>,
 }
 
 impl Draft {
@@ -62,6 +66,24 @@ impl Draft {
         self
     }
 
+    /// Lets the program of the scenario run, in a folder.
+    #[must_use]
+    pub fn allow_run(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.runs_in = Some(folder.into());
+        self
+    }
+
+    /// The programs of a call, if the scenario has one and it may run.
+    fn programs(
+        &self,
+        study: &Study,
+        is_over: impl Fn() -> bool + Send + Sync + 'static,
+    ) -> Result<Option<Arc<Programs>>, Diagnostic> {
+        let Some(error) = unallowed(study) else { return Ok(None) };
+        let folder = self.runs_in.as_ref().ok_or(error.hint("call `Draft::allow_run` if you trust it"))?;
+        Ok(Some(Arc::new(Programs::new(folder, is_over))))
+    }
+
     /// Parses and compiles the scenario.
     ///
     /// # Errors
@@ -72,7 +94,8 @@ impl Draft {
         let scenario = scenario.ok_or_else(|| Diagnostics::new(Vec::new(), sources.clone()))?;
         let world = study.worlds.len() - 1;
         placeable(&study.worlds[world]).map_err(|fault| Diagnostics::new(vec![refusal(&fault)], sources))?;
-        Ok(Model { draft: self, scenario, warnings, drivers: None })
+        let programs = self.programs(&study, || false).ok().flatten();
+        Ok(Model { draft: self, scenario, warnings, drivers: None, programs })
     }
 
     /// Compiles the scenario, perhaps with a property file.
@@ -134,6 +157,8 @@ pub struct Model {
     warnings: Diagnostics,
     /// None where all agents find their way.
     drivers: Option<Arc<MakeOwn>>,
+    /// Who runs single trials of a program.
+    programs: Option<Arc<Programs>>,
 }
 
 /// Makes the drivers of a run.
@@ -207,7 +232,13 @@ impl Model {
         if is_refused(&doubts) {
             return Err(wrong(doubts));
         }
-        let find = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+        let budget = Arc::new(options.budget());
+        let end = Arc::clone(&budget);
+        let programs =
+            self.draft.programs(&study, move || end.is_late()).map_err(|error| wrong(vec![error]))?;
+        let find = move |scenario: &Scenario, seed: u64| {
+            playing(gait::drivers(&ways, scenario, seed), programs.as_ref())
+        };
         let drivers: &MakeDrivers = match &self.drivers {
             Some(make) => &**make,
             None => &find,
@@ -223,7 +254,7 @@ impl Model {
             drivers,
         };
         let threads = options.executor().map_err(|fault| wrong(vec![refusal(&fault)]))?;
-        let outcome = run(&study, &call, &threads, &options.budget(), &Nobody);
+        let outcome = run(&study, &call, &threads, &budget, &Nobody);
         let run: CallResult = outcome.map_err(|fault| wrong(refusals(&fault)))?;
         let all = warnings.iter().cloned().chain(doubts).collect();
         Ok(Report::new(run, Diagnostics::new(all, sources.clone())))
@@ -237,7 +268,7 @@ impl Model {
         let program = Program::driven(
             self.scenario.clone(),
             self.drivers.as_ref().map_or_else(
-                || gait::drivers(&Ways::default(), &self.scenario, seed),
+                || playing(gait::drivers(&Ways::default(), &self.scenario, seed), self.programs.as_ref()),
                 |make| make(&self.scenario, seed),
             ),
         );

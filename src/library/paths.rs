@@ -50,6 +50,9 @@ fn given<'s>(bodies: impl Iterator<Item = &'s Arc<Body>>, seed: u64) -> Option<S
     (!all.is_empty()).then(|| all.join("; "))
 }
 
+/// The condition of results about a program elsewhere.
+const PROGRAM: &str = "the given program, if its trials are independent and its seed decides them";
+
 /// The same for all worlds that queries ask about, and for their rankings. An error for each agent without any path. Queries
 /// learn what they are given.
 pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnostic> {
@@ -62,6 +65,17 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
             .filter_map(|world| study.worlds.get(*world))
             .flat_map(|world| world.scenario.agents.iter().map(|agent| &agent.body));
         query.given = given(bodies, seed);
+        let is_played = |world: &usize| {
+            study.worlds.get(*world).is_some_and(|world| world.scenario.processes.outside.is_some())
+        };
+        if worlds.iter().any(is_played) {
+            query.given = Some(PROGRAM.to_owned());
+            if let Ask::Estimate { level: Some(_), .. } = query.ask {
+                let error = error!(E0603, query.span, "trials of a program cannot be split";
+                    hint: "estimate it without `by splitting`, which starts trials again from their states");
+                errors.push(error);
+            }
+        }
     }
     for number in asked {
         let Some(world) = study.worlds.get_mut(number) else { continue };

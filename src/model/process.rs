@@ -6,7 +6,9 @@
 use super::expression::{Bool, Num};
 use super::index::VariableId;
 use super::law::Law;
+use super::outside::Outside;
 use crate::base::decimal::Decimal;
+use std::sync::Arc;
 
 /// What a variable may hold. Truth values are kept as 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +117,8 @@ pub struct Processes {
     pub variables: Vec<Variable>,
     /// The processes.
     pub list: Vec<Process>,
+    /// The program elsewhere whose traces tell the variables and where people are, if one stands for the model.
+    pub outside: Option<Arc<Outside>>,
 }
 
 /// How far the probabilities of a command may be from 1 together: what rounding can do.

@@ -111,7 +111,7 @@ impl SocialForce {
                     break;
                 }
                 Err(fault) => {
-                    let wrong = agents_of(fault);
+                    let wrong = agents_of(&fault);
                     if wrong.is_empty() {
                         break;
                     }
@@ -169,8 +169,8 @@ fn finish(mut run: Run<'_>, places: impl Iterator<Item = usize>, moved: &mut [Wa
 }
 
 /// The agents who keep a run from starting.
-fn agents_of(fault: Fault) -> Vec<AgentId> {
-    match fault {
+fn agents_of(fault: &Fault) -> Vec<AgentId> {
+    match *fault {
         Fault::Together { agents: (one, other) } => vec![one, other],
         Fault::Inside { agent } | Fault::Nowhere { agent } => vec![agent],
         _ => Vec::new(),

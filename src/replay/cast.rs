@@ -32,6 +32,7 @@ impl Cast {
                 Item::Process(decl) => (&decl.name, None),
                 Item::Behaviour(decl) => (&decl.name, None),
                 Item::Source(decl) => (&decl.name, None),
+                Item::Program(decl) => (&decl.process.name, None),
                 _ => continue,
             };
             match recorded.filter(|recorded| recorded.tracks.name == tracks) {

@@ -10,7 +10,7 @@ use crate::compile::study::{Ask, MeasureKind, Role, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{
-    Agent, AgentId, Family, GaitRule, Goal, Law, Leg, Move, Obstacle, Parameter, Particle, Position,
+    Agent, AgentId, Family, GaitRule, Goal, Law, Leg, Move, Obstacle, Outside, Parameter, Particle, Position,
     RoadmapRule, Route, Scenario, SearchRule,
 };
 use crate::stats::Chosen;
@@ -68,9 +68,22 @@ fn scenario(out: &mut String, world: &World) {
     if !scene.is_empty() {
         let _ = write!(out, "\nScene\n{scene}");
     }
-    if !scenario.agents.is_empty() || written.processes.is_empty() {
+    if let Some(outside) = scenario.processes.outside.as_deref() {
+        program(out, outside);
+    } else if !scenario.agents.is_empty() || written.processes.is_empty() {
         people(out, world);
     }
+}
+
+/// The program that stands for the model.
+fn program(out: &mut String, outside: &Outside) {
+    let _ = writeln!(out, "\nProgram {}\n  run {}", outside.name, outside.told());
+    if let Some(people) = &outside.people {
+        let (most, columns) = (people.members.len(), people.columns.join(", "));
+        let _ = writeln!(out, "  at most {most} people, from the columns {columns}");
+    }
+    let end = if outside.is_held { "the last state lasts" } else { "a shorter trace is unresolved" };
+    let _ = writeln!(out, "  {} s for a trial; {end}", number(outside.limit));
 }
 
 /// The processes as they were written: what is read is the state, and names say which.

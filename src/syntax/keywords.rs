@@ -14,6 +14,8 @@ pub enum Place {
     Scene,
     /// `process p { … }`
     Process,
+    /// `program p { … }`
+    Program,
     /// `behaviour b { … }`
     Behaviour,
     /// `state s { … }`
@@ -25,7 +27,7 @@ pub enum Place {
     /// Any other block: updates, answers, paths.
     Other,
 }
-use Place::{Behaviour, Moves, Process, Properties, Scenario, Scene, State};
+use Place::{Behaviour, Moves, Process, Program, Properties, Scenario, Scene, State};
 
 /// The name behind a keyword that begins an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +65,7 @@ const fn within(word: &'static str) -> Keyword {
 }
 
 /// The keywords; of those that begin the items of a part hints name them in this order.
-pub const KEYWORDS: [Keyword; 85] = [
+pub const KEYWORDS: [Keyword; 87] = [
     starting("scenario", &[Scenario], Declares::Nothing),
     starting("horizon", &[Scenario], Declares::Nothing),
     starting("step", &[Scenario], Declares::Nothing),
@@ -75,16 +77,18 @@ pub const KEYWORDS: [Keyword; 85] = [
     starting("const", &[Scenario, Properties], Declares::Value),
     starting("param", &[Scenario], Declares::Value),
     starting("label", &[Process], Declares::Value),
+    starting("signal", &[Program], Declares::Value),
     starting("tracks", &[Scenario], Declares::Thing),
     starting("scene", &[Scenario], Declares::Nothing),
     starting("kind", &[Scenario], Declares::Thing),
     starting("agent", &[Scenario], Declares::Thing),
-    starting("agents", &[Scenario], Declares::Thing),
+    starting("agents", &[Scenario, Program], Declares::Thing),
     starting("group", &[Scenario], Declares::Thing),
     starting("groups", &[Scenario], Declares::Thing),
     starting("moves", &[Scenario], Declares::Nothing),
     starting("paths", &[Scenario], Declares::Nothing),
     starting("process", &[Scenario], Declares::Value),
+    starting("program", &[Scenario], Declares::Value),
     starting("behaviour", &[Scenario], Declares::Thing),
     starting("source", &[Scenario], Declares::Thing),
     starting("family", &[Properties], Declares::Nothing),

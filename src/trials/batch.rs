@@ -81,6 +81,8 @@ impl<'s, M: Monitors> Batch<'s, M> {
                             self.places[lane] = Some(place);
                             fresh |= Mask::lane(lane);
                         }
+                        // A program elsewhere was stopped because the time is over: nothing is known of its trial.
+                        Err(_) if budget.must_stop() => exhausted = true,
                         Err(_) => self.monitors.refuse(place),
                     }
                 }

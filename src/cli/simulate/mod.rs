@@ -6,6 +6,7 @@ mod keep;
 mod rows;
 
 use super::arguments::Simulate;
+use super::deadline::leave;
 use super::page::Trials;
 use super::terminal::{Colors, warn};
 use super::values::threads;
@@ -18,6 +19,7 @@ use crate::data::table;
 use crate::data::table::{Table, TraceFormat};
 use crate::engine::{PreparedWorld, placeable, smaller};
 use crate::kernel::Program;
+use crate::library::program::playing;
 use crate::model::Scenario;
 use crate::report::ExitCode as Exit;
 use crate::route::Ways;
@@ -30,7 +32,7 @@ use rows::Rows;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs the command.
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
@@ -95,7 +97,12 @@ fn simulate(
     let advice = arguments.advice.as_deref().map(|name| option(&scenario, name)).transpose()?;
     placeable(world).map_err(|fault| library::refusal(&fault))?;
     let last = last(&scenario, arguments.until)?;
-    let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let is_over = Arc::clone(&interrupted);
+    let programs = inputs::programs(&arguments.model, &study, move || is_over.load(Ordering::Relaxed))?;
+    let players = programs.clone();
+    let drivers =
+        move |scenario: &Scenario, seed: u64| playing(gait::drivers(&ways, scenario, seed), players.as_ref());
     let all = arguments.trial..arguments.trial + trials;
     let chosen = match (&arguments.keep, target) {
         (Some(keep), Some(target)) => {
@@ -133,14 +140,16 @@ fn simulate(
     }
     let files = destination.files(&scenario, chosen)?;
     let mut rows = Rows::new(&program, (arguments.seed, every), advice, last);
+    rows.interrupted = Arc::clone(&interrupted);
     if arguments.output.is_some() {
         // The file gets its name only when it is complete: the first signal ends the table, the second one the process.
-        let interrupted = Arc::clone(&rows.interrupted);
         let _ = ctrlc::set_handler(move || {
             if interrupted.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(Exit::Interrupted.code()));
+                leave(Exit::Interrupted);
             }
         });
+    } else if programs.is_some() {
+        let _ = ctrlc::set_handler(|| leave(Exit::Interrupted));
     }
     let table = rows::table(&scenario, arguments.seed, every);
     let helpers = if program.is_large() { Some(threads(None)?) } else { None };

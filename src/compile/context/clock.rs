@@ -85,8 +85,10 @@ impl Told {
 
 /// Whether a scenario has bodies, which move by steps.
 pub(crate) fn has_bodies(file: &ScenarioFile) -> bool {
-    file.items.iter().any(|item| {
-        matches!(item, Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_))
+    file.items.iter().any(|item| match item {
+        Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_) => true,
+        Item::Program(decl) => decl.people.is_some(),
+        _ => false,
     })
 }
 

@@ -16,6 +16,8 @@ pub struct Origins {
     pub behaviours: Vec<Span>,
     /// The imports that gave barriers: the numbers of these, and the file name.
     pub imports: Vec<(Range<usize>, Span)>,
+    /// The program that stands for the model.
+    pub program: Option<Span>,
 }
 
 /// A condition of one state as it was written. Few are ever shown, so the text is made only on request.

@@ -37,6 +37,8 @@ impl<'a> Inside<'a> {
 /// A process under elaboration.
 pub(crate) struct Declared<'a> {
     pub(crate) decl: &'a ProcessDecl,
+    /// Whether a program elsewhere tells its variables.
+    pub(crate) is_played: bool,
     /// Number of copies, of an array.
     pub(crate) copies: Option<u32>,
     /// Whether that number is not known yet, or has an error.
@@ -58,6 +60,7 @@ impl<'a> Declared<'a> {
         }
         Self {
             decl,
+            is_played: false,
             copies: None,
             uncounted: decl.count.is_some(),
             is_unknown: false,
@@ -101,6 +104,10 @@ impl<'a> Declared<'a> {
 
     /// The name of a variable, if it is one of real numbers of this process.
     pub(crate) fn real(&self, id: VariableId) -> Option<&'a str> {
+        // What a program has written as a whole number is one.
+        if self.is_played {
+            return None;
+        }
         let at = id.0.checked_sub(self.first)? as usize;
         if at >= self.variables.len() * self.copies.unwrap_or(1) as usize {
             return None;

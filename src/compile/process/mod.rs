@@ -5,6 +5,7 @@
 
 pub(crate) mod commands;
 pub(crate) mod parts;
+pub(crate) mod program;
 pub(crate) mod reachable;
 pub(crate) mod timing;
 
@@ -219,7 +220,7 @@ pub(crate) fn settle_commands(
     variables: Vec<Variable>,
     people: &mut People,
 ) -> Processes {
-    let mut out = Processes { variables, list: Vec::new() };
+    let mut out = Processes { variables, list: Vec::new(), outside: None };
     let mut writings = Vec::new();
     for at in 0..context.processes.len() {
         let decl = context.processes[at].decl;

@@ -1,5 +1,7 @@
 //! Measures: what is asked of the distribution of traces.
 
+use crate::base::tick::Tick;
+use crate::compile::context::processes::Declared;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     number::Number,
@@ -139,11 +141,14 @@ fn warn_of_first_state(context: &mut Context<'_>, node: NodeId, span: Span) {
     context.note(warning);
 }
 
-/// Whether nothing ever changes: nobody is there, and no process has a command. All states are the first one.
+/// Whether nothing ever changes: nobody is there, and no process has a command. All states are the first one; a program of one
+/// step tells just that.
 fn is_still(context: &Context<'_>) -> bool {
     let is_command = |item: &ProcessItem| matches!(item, ProcessItem::Command(_));
-    context.roster.agent_names.is_empty()
-        && !context.processes.iter().any(|process| process.decl.items.iter().any(is_command))
+    let changes = |process: &Declared<'_>| {
+        process.decl.items.iter().any(is_command) || process.is_played && context.time.horizon > Tick(1)
+    };
+    context.roster.agent_names.is_empty() && !context.processes.iter().any(changes)
 }
 
 /// Whether a formula reads any state. One that is refused for its shape counts as if it did.

@@ -31,6 +31,7 @@ pub(in crate::engine) fn unresolved(
     let scenario = &program.scenario;
     let mut run = match Run::of(program, item.address(seed)) {
         Ok((run, _)) => run,
+        Err(start::Fault::Program(said)) => return said.to_string(),
         Err(fault) => return format!("cannot start: {}", no_start(scenario, fault)),
     };
     if scenario.clock.is_jumps() {
@@ -189,6 +190,7 @@ pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
         ),
         start::Fault::Order { agent } => of(agent, "starts near an agent that is placed later"),
         start::Fault::Advice { .. } => String::new(),
+        start::Fault::Program(said) => said.to_string(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::situation::Situation;
 use crate::kernel::plan::{Memory, Plan};
+use crate::kernel::tape::Player;
 use crate::model::{AgentId, Scenario};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ pub struct Drivers {
     list: Vec<Arc<dyn Driver>>,
     /// Index into the list for each agent up to the last one that has a driver.
     of: Vec<Option<u32>>,
+    /// Who plays trials of a program elsewhere.
+    player: Option<Arc<dyn Player>>,
 }
 
 impl Drivers {
@@ -41,6 +44,17 @@ impl Drivers {
             self.of[agent as usize] = Some(index);
         }
         self
+    }
+
+    /// Trials of a program elsewhere are played by this one.
+    #[must_use]
+    pub fn played_by(self, player: Arc<dyn Player>) -> Self {
+        Self { player: Some(player), ..self }
+    }
+
+    /// Who plays trials of a program elsewhere, if anybody may.
+    pub(super) fn player(&self) -> Option<&dyn Player> {
+        self.player.as_deref()
     }
 
     /// Seed of the run.

@@ -5,6 +5,7 @@ use super::person::way_to;
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
+use crate::kernel::tape::Player;
 use crate::model::{AgentId, ByDoors, Goal, Law, Leg, Move, Route, Scenario, Sight};
 use std::sync::Arc;
 
@@ -152,6 +153,11 @@ fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Sta
 }
 
 impl Drive {
+    /// Who plays trials of a program elsewhere, if anybody may.
+    pub(in crate::kernel) fn player(&self) -> Option<&dyn Player> {
+        self.drivers.player()
+    }
+
     /// Works out the routes. Neighbours in the list of agents with the same route share its stages, so
     /// that a crowd is steered as one.
     pub fn new(scenario: &Arc<Scenario>, drivers: Drivers) -> Self {

@@ -96,6 +96,18 @@ pub fn load_absent(program: &Program, state: &mut State, key: TrialKey) -> Resul
     Ok(())
 }
 
+/// Begins a trial that is played back, in which nobody is there yet.
+pub(super) fn load_played(program: &Program, state: &mut State, key: TrialKey) {
+    begin(program, state, 0, key);
+}
+
+/// Somebody is seen for the first time in a trial that is played back.
+pub(super) fn appear(program: &Program, state: &mut State, agent: usize, at: Vec2) -> Result<(), Fault> {
+    let body = program.parameters.draw((AgentId(agent as u32), 0), state.keys[0])?;
+    enter(program, state, (agent, 0), (Occasion::Begins, None), &body, at);
+    Ok(())
+}
+
 /// The trial itself and its processes.
 fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.keys[lane] = key;

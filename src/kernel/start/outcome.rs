@@ -2,6 +2,7 @@
 
 use crate::kernel::parameters::Impossible;
 use crate::model::{AgentId, BarrierId};
+use std::sync::Arc;
 
 /// What loading a trial found worth counting.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,7 +36,7 @@ pub enum Overlapped {
 }
 
 /// Why a trial cannot begin.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A parameter has a value with which nobody can move.
     #[error("parameter `{name}` of agent {} is {value}", agent.0)]
@@ -85,6 +86,9 @@ pub enum Fault {
         /// Which of its options.
         option: usize,
     },
+    /// A program elsewhere has run no trial to its end.
+    #[error("{0}")]
+    Program(Arc<str>),
 }
 
 impl From<Impossible> for Fault {

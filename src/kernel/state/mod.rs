@@ -16,6 +16,7 @@ pub(super) mod route;
 
 use super::fault::Fault;
 pub use super::layout::{Layout, Slot};
+use super::tape::Tape;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
@@ -30,6 +31,7 @@ pub use plans::Plans;
 pub use progress::Progress;
 use route::Halt;
 pub use route::{Routes, Way};
+use std::sync::Arc;
 
 /// The moving state of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +84,8 @@ pub struct State {
     pub faulty: Mask,
     /// What the error is.
     pub faults: [Option<Fault>; LANES],
+    /// What is played back, if it is a trial of a program elsewhere.
+    pub tape: Option<Arc<Tape>>,
 }
 
 impl State {
@@ -112,6 +116,7 @@ impl State {
             clocks: Clocks::default(),
             faulty: Mask::NONE,
             faults: [None; LANES],
+            tape: None,
         }
     }
 

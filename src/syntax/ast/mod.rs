@@ -27,7 +27,7 @@ pub use expression::{
 };
 pub use process::{
     BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem,
-    SourceDecl, StateDecl, Timing, Transition, Update, VarDecl,
+    ProgramDecl, ShownDecl, SourceDecl, StateDecl, Timing, Transition, Update, VarDecl,
 };
 pub use property::{
     Binding, Clauses, Constraint, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind,

@@ -1,6 +1,6 @@
 //! Processes, behaviours and sources: chance that is not a parameter.
 
-use super::{Expr, Field, Ident, LetDecl, Value};
+use super::{Expr, Field, Ident, LetDecl, Text, Value};
 use crate::syntax::source::Span;
 
 /// `process queue { … }`
@@ -96,6 +96,32 @@ pub struct Update {
     pub target: Ident,
     /// Its new value, over the old state.
     pub value: Expr,
+}
+
+/// `program sim { … }`: a program that runs elsewhere and writes its trace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProgramDecl {
+    /// The variables of its trace, as those of a process of its name: one for each column that a signal reads.
+    pub process: ProcessDecl,
+    /// The columns of these variables.
+    pub columns: Vec<Text>,
+    /// `signal speed = column("v") * 1 m/s`
+    pub signals: Vec<LetDecl>,
+    /// The people whom it shows.
+    pub people: Option<ShownDecl>,
+    /// How it is run and read.
+    pub body: Vec<Field>,
+}
+
+/// `agents people[40] = columns("id", "x", "y")`
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownDecl {
+    /// Name of the set.
+    pub name: Ident,
+    /// `[n]`: at most so many in a trial.
+    pub count: Option<Expr>,
+    /// Their columns.
+    pub columns: Expr,
 }
 
 /// `behaviour heedful(p) { … }`

@@ -1,6 +1,6 @@
 //! Scenario files (`.scn`).
 
-use super::{BehaviourDecl, Binding, Broken, Expr, Ident, ProcessDecl, SourceDecl, Text};
+use super::{BehaviourDecl, Binding, Broken, Expr, Ident, ProcessDecl, ProgramDecl, SourceDecl, Text};
 use crate::syntax::source::Span;
 
 /// A whole scenario file.
@@ -72,6 +72,8 @@ pub enum Item {
     Paths(PathsDecl),
     /// `process queue { … }`
     Process(ProcessDecl),
+    /// `program sim { … }`
+    Program(ProgramDecl),
     /// `behaviour phone { … }`
     Behaviour(BehaviourDecl),
     /// `source doors: adult { … }`

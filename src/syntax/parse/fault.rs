@@ -133,6 +133,7 @@ impl Builder<'_> {
         let blocks = [
             (Rule::behaviour_item, "behaviour"),
             (Rule::process_item, "process"),
+            (Rule::program_item, "program"),
             (Rule::scene_item, "scene"),
             (Rule::move_option, "list of moves"),
         ];
@@ -181,6 +182,7 @@ fn declaration(rule: Rule) -> Rule {
         Rule::line_of_properties => Rule::property_item,
         Rule::line_of_state => Rule::state_item,
         Rule::line_of_updates => Rule::update,
+        Rule::line_of_program => Rule::program_item,
         _ => Rule::field,
     }
 }

@@ -7,6 +7,7 @@ mod agents;
 mod bounds;
 mod braces;
 mod builder;
+mod columns;
 pub(super) mod comments;
 mod declaration;
 mod expression;

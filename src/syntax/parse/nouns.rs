@@ -78,6 +78,7 @@ fn place(rule: Rule) -> Option<Place> {
         Rule::property_item => Place::Properties,
         Rule::scene_item => Place::Scene,
         Rule::process_item => Place::Process,
+        Rule::program_item => Place::Program,
         Rule::behaviour_item => Place::Behaviour,
         Rule::state_item | Rule::transition => Place::State,
         Rule::move_option => Place::Moves,

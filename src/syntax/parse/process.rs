@@ -1,11 +1,13 @@
-//! Processes and behaviours.
+//! Processes, programs that run elsewhere, and behaviours.
 
 use super::builder::{Builder, Pair, Parts};
+use super::columns::Columns;
 use super::grammar::Rule;
 use super::quantity;
 use crate::syntax::ast::{
-    BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, Expr, ExprKind, OnDecl,
-    ProcessDecl, ProcessItem, StateDecl, Timing, Transition, Update, Value, VarDecl,
+    BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, Expr, ExprKind, LetDecl, OnDecl,
+    ProcessDecl, ProcessItem, ProgramDecl, ShownDecl, StateDecl, Text, Timing, Transition, Update, Value,
+    VarDecl,
 };
 use crate::syntax::source::Span;
 
@@ -114,6 +116,41 @@ impl Builder<'_> {
                     hint: "write `1/2: …` before each branch; write a Boolean value with `|` in parentheses"),
             );
         }
+    }
+
+    pub(super) fn program(&mut self, pair: Pair<'_>) -> Option<ProgramDecl> {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::name)?);
+        let (mut signals, mut people, mut body): (Vec<LetDecl>, _, _) = (Vec::new(), None, Vec::new());
+        let mut columns = Columns { program: name.clone(), read: Vec::new() };
+        self.block(&parts.part(Rule::block)?, Rule::line_of_program, &mut |builder, part| {
+            let part = part.into_inner().next()?;
+            let place = builder.span(&part);
+            let rule = part.as_rule();
+            if rule == Rule::field {
+                body.push(builder.field(part)?);
+                return Some(());
+            }
+            let mut parts = Parts::of(part);
+            let name = builder.ident(&parts.part(Rule::name)?);
+            let count = builder.size(&mut parts);
+            let mut value = builder.expr(parts.part(Rule::expr)?);
+            if rule == Rule::signal {
+                columns.replace(&mut value);
+                signals.push(LetDecl { name, arguments: Vec::new(), body: value });
+            } else if people.is_none() {
+                people = Some(ShownDecl { name, count, columns: value });
+            } else {
+                builder.say(error!(E0118, place, "a program shows one set of agents";
+                    hint: "tell them apart by a column, and read that as a signal"));
+            }
+            Some(())
+        });
+        let (variables, columns): (Vec<VarDecl>, Vec<Text>) = columns.read.into_iter().unzip();
+        let items = variables.into_iter().map(ProcessItem::Var).collect();
+        let process = ProcessDecl { name, count: None, items, span };
+        Some(ProgramDecl { process, columns, signals, people, body })
     }
 
     pub(super) fn behaviour(&mut self, pair: Pair<'_>) -> Option<BehaviourDecl> {

@@ -82,6 +82,7 @@ impl Builder<'_> {
                 Some(Item::Paths(PathsDecl { agent, member, alternatives, span }))
             }
             Rule::process => self.process(pair).map(Item::Process),
+            Rule::program => self.program(pair).map(Item::Program),
             Rule::behaviour => self.behaviour(pair).map(Item::Behaviour),
             Rule::source => self.source_decl(pair).map(Item::Source),
             _ => None,
