@@ -242,7 +242,7 @@ fn wrong_declarations_are_refused() {
         ("{seed} {wdith}", SIGNAL, "", "error[E0201]: unknown parameter `wdith`"),
         ("{seed} {width", SIGNAL, "", "error[E0411]: `{width` opens a brace"),
         ("{seed}", "trace = xml", "", "error[E0305]: expected `csv` or `jsonl`"),
-        ("{seed}", "ends = held\nlimit = 0 s", "", "error[E0305]: expected a time above 0 s"),
+        ("{seed}", "ends = held\nlimit = 0 s", "", "error[E0305]: expected a value above 0"),
         ("{seed}", "speed = 3", "", "error[E0207]: unknown field `speed`"),
         (
             "{seed}",

@@ -26,6 +26,8 @@ const PLACES: usize = 100;
 /// Radius of people unless it is written, m; and how long a trial may run, s.
 const RADIUS: f64 = 0.2;
 const LIMIT: f64 = 60.0;
+/// No amount is larger, SI units.
+const MOST: f64 = 1e6;
 /// The preset that gives people the parameters that nothing reads.
 const PRESET: &str = "cfs2";
 
@@ -45,19 +47,7 @@ pub(crate) fn shown<'a>(
     let shown = decl.people.as_ref()?;
     let name = &shown.name;
     let count = shown.count.as_ref().map_or(Ok(PLACES), |count| people::counted(context, count));
-    let radius = match field(decl, "radius").map(|field| &field.value) {
-        Some(Value::Plain(expr)) => {
-            context.number_of(expr, Dimension::LENGTH, &Locals::of(0)).and_then(|number| {
-                if number.value > 0.0 {
-                    Ok(number.value)
-                } else {
-                    refuse(context, expr.span, "a radius above 0")
-                }
-            })
-        }
-        Some(other) => refuse(context, other.span(), "a length"),
-        None => Ok(RADIUS),
-    };
+    let radius = amount(context, decl, "radius", (Dimension::LENGTH, RADIUS));
     let (Ok(count), Ok(radius)) = (count, radius) else {
         let nobody = attachment::with(context, name, &[]);
         people::define_empty(context, name, true, nobody);
@@ -113,11 +103,7 @@ pub(crate) fn program<'a>(
         context.note(error.hint("write a scenario for each, and `compare` results by their intervals"));
     }
     alone(context, file, decl);
-    let known = FIELDS.iter().copied();
-    for field in decl.body.iter().filter(|field| !FIELDS.contains(&field.name.name.as_str())) {
-        let error = unknown("field", &field.name.name, field.name.span, Code::E0207, known.clone());
-        context.note(error);
-    }
+    people::only(context, &decl.body.iter().collect::<Vec<_>>(), &FIELDS);
     let words = words(context, decl);
     let format = word(context, decl, "trace", &TraceForm::ALL.map(|(name, _)| name));
     let ends = word(context, decl, "ends", &["held"]);
@@ -126,20 +112,7 @@ pub(crate) fn program<'a>(
         Some(other) => refuse(context, other.span(), "the column of the time in quotes"),
         None => Ok("t".to_owned()),
     };
-    let limit = match field(decl, "limit").map(|field| &field.value) {
-        Some(Value::Plain(expr)) => {
-            context.number_of(expr, Dimension::TIME, &Locals::of(0)).and_then(|number| {
-                let most = 1e6;
-                if number.value > 0.0 && number.value <= most {
-                    Ok(number.value)
-                } else {
-                    refuse(context, expr.span, "a time above 0 s and at most 1e6 s")
-                }
-            })
-        }
-        Some(other) => refuse(context, other.span(), "a time"),
-        None => Ok(LIMIT),
-    };
+    let limit = amount(context, decl, "limit", (Dimension::TIME, LIMIT));
     let people = decl.people.as_ref().map(|shown| columns(context, &shown.columns)).transpose();
     context.origins.program = Some(decl.process.name.span);
     let members = sources.first().map(|source| source.members.clone()).unwrap_or_default();
@@ -172,6 +145,24 @@ fn alone(context: &mut Context<'_>, file: &ScenarioFile, program: &ProgramDecl) 
         let error = error!(E0411, name.span, "`{}` has no part in the program `{}`", name.name, own.name)
             .related(own.span, "which stands for the whole model");
         context.note(error.hint("remove it, or let the program write it as columns of its trace"));
+    }
+}
+
+/// The amount that a field sets, or its default.
+fn amount<'a>(
+    context: &mut Context<'a>,
+    decl: &'a ProgramDecl,
+    name: &str,
+    (dimension, default): (Dimension, f64),
+) -> Lowered<f64> {
+    match field(decl, name).map(|field| &field.value) {
+        Some(Value::Plain(expr)) => {
+            let value = context.number_of(expr, dimension, &Locals::of(0))?.value;
+            let fits = value > 0.0 && value <= MOST;
+            if fits { Ok(value) } else { refuse(context, expr.span, "a value above 0 and at most 1e6") }
+        }
+        Some(other) => refuse(context, other.span(), "a number with its unit"),
+        None => Ok(default),
     }
 }
 
