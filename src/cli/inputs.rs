@@ -4,12 +4,11 @@ use super::complaint;
 use super::terminal::Colors;
 use super::values::Model;
 use crate::compile::{Study, matches};
-use crate::engine::outcome::{Finding, Spot};
+pub(super) use crate::library::findings;
 use crate::library::program::Programs;
 use crate::library::{self, Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
-use crate::syntax::source::{Source, Span};
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -20,24 +19,6 @@ const MOST_BYTES: u64 = 256 << 20;
 
 /// The file that standard input is read from, on systems that give it a name.
 pub(super) const STDIN: &str = "/dev/stdin";
-
-/// Errors and warnings as reports quote them.
-pub(super) fn findings(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<Finding> {
-    let spot = |span: Span| {
-        let source = sources.iter().find(|source| source.id == span.source)?;
-        let (start, end) = (source.line_column(span.start), source.line_column(span.end));
-        Some(Spot { file: source.name.clone(), start, end })
-    };
-    let one = |diagnostic: &Diagnostic| Finding {
-        error: diagnostic.severity == Severity::Error,
-        code: diagnostic.code.to_string(),
-        spot: diagnostic.place.as_ref().and_then(|label| spot(label.span)),
-        message: diagnostic.title.clone(),
-        label: diagnostic.place.as_ref().map_or(String::new(), |label| label.text.clone()),
-        hint: diagnostic.hint.clone(),
-    };
-    diagnostics.iter().map(one).collect()
-}
 
 /// Bytes of a file, or of standard input for `-`.
 pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {

@@ -37,6 +37,7 @@ use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use arguments::Verb;
 use check::Way;
+use std::ffi::OsString;
 use std::process;
 use terminal::{Colors, say};
 
@@ -45,11 +46,16 @@ const STACK: usize = 256 << 20;
 
 /// Runs the program.
 pub fn run() -> process::ExitCode {
-    let mut arguments = match misuse::parse(std::env::args_os().collect()) {
+    process::ExitCode::from(run_as(std::env::args_os().collect()))
+}
+
+/// Runs the program with these words, of which the first one is its own name; its exit code.
+pub fn run_as(words: Vec<OsString>) -> u8 {
+    let mut arguments = match misuse::parse(words) {
         Ok(arguments) => arguments,
         Err(error) => {
             let exit = if error.use_stderr() { Exit::Wrong } else { Exit::Success };
-            return process::ExitCode::from(exit.code());
+            return exit.code();
         }
     };
     if let Verb::Merge(command) = &mut arguments.verb {
@@ -90,7 +96,7 @@ pub fn run() -> process::ExitCode {
             Exit::Wrong
         }
     };
-    process::ExitCode::from(exit.code())
+    exit.code()
 }
 
 fn dispatch(verb: &Verb, colors: Colors) -> Exit {

@@ -17,7 +17,7 @@ mod report;
 mod trial;
 mod ways;
 
-pub use diagnostics::Diagnostics;
+pub use diagnostics::{Diagnostics, findings};
 pub use front::{Folder, Inputs, Names, Parsed, load, parse};
 pub use model::{Draft, Model};
 pub use options::{Options, chosen};

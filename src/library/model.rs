@@ -4,18 +4,21 @@ use super::diagnostics::Diagnostics;
 use super::front::{Folder, Inputs, Names, load};
 use super::options::Options;
 use super::program::{Programs, playing, unallowed};
-use super::refusal::{refusal, refusals};
+use super::refusal::{of_model, refusal, refusals};
 use super::report::Report;
 use super::trial::Trial;
 use super::ways::{is_refused, survey};
+use crate::base::fingerprint::Fingerprint;
 use crate::base::random::TrialKey;
 use crate::compile::{Study, matches};
-use crate::engine::outcome::CallResult;
-use crate::engine::{Call, CommandLine, Nobody, no_start, placeable, run};
+use crate::engine::outcome::{CallResult, Failure};
+use crate::engine::traces::{Traces, simulated, traces};
+use crate::engine::{Budget, Call, CommandLine, Fault, Nobody, Watch, no_start, placeable, run};
 use crate::gait;
 use crate::kernel::driver::{Drivers, MakeDrivers};
-use crate::kernel::{Address, Program};
+use crate::kernel::{Address, Program, start};
 use crate::model::Scenario;
+use crate::report::html::{MOST_NUMBERS, Page, page};
 use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -42,6 +45,23 @@ pub struct Draft {
     files: BTreeMap<String, Vec<u8>>,
     /// Where a program of the scenario may run.
     runs_in: Option<PathBuf>,
+    /// Reads files that were not given.
+    reader: Option<Reader>,
+    /// Folders for recordings and imports, as `--data` names them.
+    data: Vec<String>,
+}
+
+/// Reads the bytes of a file by the path that the scenario gives it, or says in a sentence why there are none.
+#[derive(Clone)]
+struct Reader(Arc<ReadFile>);
+
+/// Reads a file.
+type ReadFile = dyn Fn(&str) -> Result<Vec<u8>, String> + Send + Sync;
+
+impl fmt::Debug for Reader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Reader")
+    }
 }
 
 impl Draft {
@@ -63,6 +83,17 @@ impl Draft {
     #[must_use]
     pub fn file(mut self, path: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         self.files.insert(path.into(), bytes.into());
+        self
+    }
+
+    /// Files that were not given are read by this; it looks into folders that replay lines name as `--data`.
+    #[must_use]
+    pub fn reading(
+        mut self,
+        data: Vec<String>,
+        read: impl Fn(&str) -> Result<Vec<u8>, String> + Send + Sync + 'static,
+    ) -> Self {
+        (self.data, self.reader) = (data, Some(Reader(Arc::new(read))));
         self
     }
 
@@ -89,24 +120,22 @@ impl Draft {
     /// # Errors
     /// All errors of the text, as the command line shows them.
     pub fn parse(self) -> Result<Model, Diagnostics> {
-        let (study, sources, warnings) = self.compiled(None)?;
-        let scenario = study.worlds.last().map(|world| world.scenario.clone());
-        let scenario = scenario.ok_or_else(|| Diagnostics::new(Vec::new(), sources.clone()))?;
-        let world = study.worlds.len() - 1;
-        placeable(&study.worlds[world]).map_err(|fault| Diagnostics::new(vec![refusal(&fault)], sources))?;
+        let (study, Inputs { sources, diagnostics, .. }) = self.compiled(&[])?;
+        let warnings = Diagnostics::new(diagnostics, sources.clone());
+        let world = study.worlds.len().saturating_sub(1);
+        let last = study.worlds.get(world).ok_or_else(|| warnings.clone())?;
+        placeable(last).map_err(|fault| Diagnostics::new(vec![refusal(&fault)], sources))?;
         let programs = self.programs(&study, || false).ok().flatten();
+        let scenario = last.scenario.clone();
         Ok(Model { draft: self, scenario, warnings, drivers: None, programs })
     }
 
-    /// Compiles the scenario, perhaps with a property file.
-    fn compiled(
-        &self,
-        properties: Option<(&str, &str)>,
-    ) -> Result<(Study, Vec<Source>, Diagnostics), Diagnostics> {
+    /// Compiles the scenario, perhaps with property files.
+    fn compiled(&self, properties: &[(&str, &str)]) -> Result<(Study, Inputs), Diagnostics> {
         let names: Vec<String> = properties.iter().map(|(name, _)| (*name).to_owned()).collect();
         let settings = self.assignments();
-        let mut given = Given { draft: self, properties: properties.map_or("", |(_, text)| text) };
-        let Inputs { sources, diagnostics, study, .. } = load(
+        let mut given = Given { draft: self, properties };
+        let mut inputs = load(
             Names {
                 scenario: &self.name,
                 properties: &names,
@@ -118,8 +147,10 @@ impl Draft {
             },
             &mut given,
         );
-        let found = Diagnostics::new(diagnostics, sources.clone());
-        study.map_or(Err(found.clone()), |study| Ok((study, sources, found)))
+        match inputs.study.take() {
+            Some(study) => Ok((study, inputs)),
+            None => Err(Diagnostics::new(inputs.diagnostics, inputs.sources)),
+        }
     }
 
     fn assignments(&self) -> Vec<String> {
@@ -130,18 +161,22 @@ impl Draft {
 /// The texts and files that a draft holds. The scenario is asked for first.
 struct Given<'d> {
     draft: &'d Draft,
-    properties: &'d str,
+    properties: &'d [(&'d str, &'d str)],
 }
 
 impl Folder for Given<'_> {
     fn text(&mut self, name: &str) -> Result<Vec<u8>, String> {
-        let text = if name == self.draft.name { self.draft.text.as_str() } else { self.properties };
+        let properties = self.properties.iter().find(|(known, _)| *known == name);
+        let text = properties.map_or(self.draft.text.as_str(), |(_, text)| text);
         Ok(text.as_bytes().to_vec())
     }
 
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
-        let contents = self.draft.files.get(path).cloned();
-        contents.ok_or_else(|| format!("the contents of `{path}` were not given; call `Draft::file`"))
+        match (self.draft.files.get(path), &self.draft.reader) {
+            (Some(contents), _) => Ok(contents.clone()),
+            (None, Some(Reader(read))) => read(path),
+            (None, None) => Err(format!("the contents of `{path}` were not given; call `Draft::file`")),
+        }
     }
 
     fn matching(&mut self, pattern: &str) -> Vec<String> {
@@ -213,18 +248,72 @@ impl Model {
     pub fn check(&self, properties: &str, options: &Options) -> Result<Report, Diagnostics> {
         // Property files are told apart from the scenario by their name.
         let name = if self.draft.name == PROPERTIES { "queries.bltl" } else { PROPERTIES };
-        let (mut study, sources, warnings) = self.draft.compiled(Some((name, properties)))?;
+        self.check_files(&[(name, properties)], options, &Arc::new(options.budget()), &Nobody)
+    }
+
+    /// The same for property files, each with its name and its text. Whoever holds the budget may interrupt the check, which
+    /// then reports what it has found so far; whoever watches learns how far it is.
+    ///
+    /// # Errors
+    /// As for one property file.
+    pub fn check_files(
+        &self,
+        properties: &[(&str, &str)],
+        options: &Options,
+        budget: &Arc<Budget>,
+        watch: &dyn Watch,
+    ) -> Result<Report, Diagnostics> {
+        let threads = options.executor();
+        self.ask(properties, options, budget, |asked| {
+            let Asked { study, call, inputs, prints } = asked;
+            let mut run = run(study, call, &threads?, budget, watch)?;
+            let broken = match &run.failure {
+                Some(Failure::Model(flaw)) => Some(of_model(flaw)),
+                _ => None,
+            };
+            let found = inputs.iter().cloned().chain(broken).collect();
+            run.inputs = prints.to_vec();
+            Ok((run, found))
+        })
+        .map(|((run, found), sources)| {
+            let found = Diagnostics::new(found, sources);
+            Report::new(CallResult { diagnostics: found.findings(), ..run }, found)
+        })
+    }
+
+    /// A report as a page that stands by itself: tables, figures, and a player of the trials behind the results, which run again.
+    ///
+    /// # Errors
+    /// As for the check.
+    pub fn page(
+        &self,
+        properties: &[(&str, &str)],
+        options: &Options,
+        report: &Report,
+    ) -> Result<String, Diagnostics> {
+        let (budget, run) = (Arc::new(options.budget()), report.run());
+        let traces = self.ask(properties, options, &budget, |asked| {
+            Ok(traces(asked.study, run, asked.call, &budget, MOST_NUMBERS))
+        });
+        traces.map(|(traces, sources)| {
+            page(Page { run: run.clone(), sources: &sources, traces, ..Page::default() })
+        })
+    }
+
+    /// Compiles property files with the scenario, surveys the ways, and does some work on what they ask; and the texts.
+    fn ask<R>(
+        &self,
+        properties: &[(&str, &str)],
+        options: &Options,
+        budget: &Arc<Budget>,
+        work: impl FnOnce(&Asked<'_>) -> Result<R, Fault>,
+    ) -> Result<(R, Vec<Source>), Diagnostics> {
+        let (mut study, Inputs { sources, mut diagnostics, prints, .. }) = self.draft.compiled(properties)?;
         let wrong = |found: Vec<Diagnostic>| Diagnostics::new(found, sources.clone());
         let only = options.chosen(&study).map_err(|error| wrong(vec![error]))?;
         let place = |span: Span| {
             let source = sources.iter().find(|source| source.id == span.source);
             source.map_or((String::new(), 0), |s| (s.name.clone(), s.line_column(span.start).0))
-        };
-        let line = CommandLine {
-            scenario: self.draft.name.clone(),
-            properties: vec![name.to_owned()],
-            settings: self.draft.assignments(),
-            ..CommandLine::default()
         };
         let ways = Ways::default();
         let doubts =
@@ -232,8 +321,8 @@ impl Model {
         if is_refused(&doubts) {
             return Err(wrong(doubts));
         }
-        let budget = Arc::new(options.budget());
-        let end = Arc::clone(&budget);
+        diagnostics.extend(doubts);
+        let end = Arc::clone(budget);
         let programs =
             self.draft.programs(&study, move || end.is_late()).map_err(|error| wrong(vec![error]))?;
         let find = move |scenario: &Scenario, seed: u64| {
@@ -247,17 +336,15 @@ impl Model {
             seed: options.seed,
             branch: 0,
             explains: true,
-            shows_evidence: false,
-            line,
+            shows_evidence: options.evidence,
+            line: self.line(properties),
             only,
             place: &place,
             drivers,
         };
-        let threads = options.executor().map_err(|fault| wrong(vec![refusal(&fault)]))?;
-        let outcome = run(&study, &call, &threads, &budget, &Nobody);
-        let run: CallResult = outcome.map_err(|fault| wrong(refusals(&fault)))?;
-        let all = warnings.iter().cloned().chain(doubts).collect();
-        Ok(Report::new(run, Diagnostics::new(all, sources.clone())))
+        let asked = Asked { study: &study, call: &call, inputs: &diagnostics, prints: &prints };
+        let done = work(&asked).map_err(|fault| wrong(refusals(&fault)))?;
+        Ok((done, sources))
     }
 
     /// A trial, state by state: the same that a check with this seed reads under this index.
@@ -265,20 +352,64 @@ impl Model {
     /// # Errors
     /// Where the trial cannot start: people find no place.
     pub fn trial(&self, seed: u64, index: u64) -> Result<Trial, Diagnostics> {
-        let program = Program::driven(
-            self.scenario.clone(),
-            self.drivers.as_ref().map_or_else(
-                || playing(gait::drivers(&Ways::default(), &self.scenario, seed), self.programs.as_ref()),
-                |make| make(&self.scenario, seed),
-            ),
-        );
         let key = TrialKey { seed, index, branch: 0 };
-        Trial::new(program, Address::from(key)).map_err(|fault| {
-            let reason = no_start(&self.scenario, fault);
-            let text = format!("trial {index} cannot start: {reason}");
-            Diagnostics::new(vec![Diagnostic::placeless(Code::E0801, text)], Vec::new())
-        })
+        Trial::new(self.program(seed), Address::from(key)).map_err(|fault| self.no_trial(index, fault))
     }
+
+    /// Some trials of a seed as a page that stands by itself, with a player.
+    ///
+    /// # Errors
+    /// Where one of them cannot start.
+    pub fn play(&self, seed: u64, indices: &[u64]) -> Result<String, Diagnostics> {
+        let (program, scenario) = (self.program(seed), &self.scenario);
+        let one = |index: &u64| {
+            let key = TrialKey { seed, index: *index, branch: 0 };
+            let trace = simulated(&program, key.into(), scenario.horizon, |_, _| {});
+            trace.map_err(|fault| self.no_trial(*index, fault))
+        };
+        let list = indices.iter().map(one).collect::<Result<_, _>>()?;
+        let replay = self.line(&[]).simulate(&[], seed, indices.first().copied().unwrap_or(0));
+        let title = if scenario.title.is_empty() { &self.draft.name } else { &scenario.title };
+        let run = CallResult { replay, ..CallResult::of(title, seed) };
+        let traces = Traces { list, left_out: 0 };
+        Ok(page(Page { run, sources: self.warnings.sources(), traces, ..Page::default() }))
+    }
+
+    /// The scenario made ready for the trials of a seed.
+    pub fn program(&self, seed: u64) -> Program {
+        let drivers = match &self.drivers {
+            Some(make) => make(&self.scenario, seed),
+            None => playing(gait::drivers(&Ways::default(), &self.scenario, seed), self.programs.as_ref()),
+        };
+        Program::driven(self.scenario.clone(), drivers)
+    }
+
+    /// Why a trial cannot start.
+    pub fn no_trial(&self, index: u64, fault: start::Fault) -> Diagnostics {
+        let text = format!("trial {index} cannot start: {}", no_start(&self.scenario, fault));
+        Diagnostics::new(vec![Diagnostic::placeless(Code::E0801, text)], Vec::new())
+    }
+
+    /// The call of the program that asks the same.
+    fn line(&self, properties: &[(&str, &str)]) -> CommandLine {
+        CommandLine {
+            scenario: self.draft.name.clone(),
+            properties: properties.iter().map(|(name, _)| (*name).to_owned()).collect(),
+            settings: self.draft.assignments(),
+            data: self.draft.data.clone(),
+            allow_run: self.draft.runs_in.is_some(),
+            ..CommandLine::default()
+        }
+    }
+}
+
+/// Queries that were compiled with their scenario.
+struct Asked<'a> {
+    study: &'a Study,
+    call: &'a Call<'a>,
+    /// Warnings about the texts and about ways.
+    inputs: &'a [Diagnostic],
+    prints: &'a [(String, Fingerprint)],
 }
 
 /// The name of a property text in messages and replay lines.

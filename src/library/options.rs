@@ -16,12 +16,20 @@ pub struct Options {
     max_trials: u64,
     timeout: Option<Duration>,
     only: Vec<String>,
+    pub(super) evidence: bool,
 }
 
 impl Default for Options {
     /// Seed 0, all cores, at most a million trials a query, no timeout, all queries.
     fn default() -> Self {
-        Self { seed: 0, threads: None, max_trials: DEFAULT_TRIALS, timeout: None, only: Vec::new() }
+        Self {
+            seed: 0,
+            threads: None,
+            max_trials: DEFAULT_TRIALS,
+            timeout: None,
+            only: Vec::new(),
+            evidence: false,
+        }
     }
 }
 
@@ -50,6 +58,12 @@ impl Options {
         Self { timeout: Some(timeout), ..self }
     }
 
+    /// Keeps how the evidence of each result grew, for figures.
+    #[must_use]
+    pub fn evidence(self, evidence: bool) -> Self {
+        Self { evidence, ..self }
+    }
+
     /// Asks only queries of this property, or of this number; may be called several times.
     #[must_use]
     pub fn only(mut self, query: impl Into<String>) -> Self {
@@ -57,7 +71,8 @@ impl Options {
         self
     }
 
-    pub(super) fn budget(&self) -> Budget {
+    /// The budget of a check that begins now. Whoever holds it may interrupt the check.
+    pub fn budget(&self) -> Budget {
         Budget::new(self.max_trials, self.timeout)
     }
 

@@ -22,6 +22,21 @@ impl Trial {
         Ok(Self { run, scenario, begun: false, end: None })
     }
 
+    /// Goes to the next state, at first to the one at the start, and gives it as the kernel keeps it; `None` where the trial has
+    /// ended.
+    pub fn next_state(&mut self) -> Option<&State> {
+        if self.end.is_some() {
+            return None;
+        }
+        if std::mem::replace(&mut self.begun, true)
+            && let Err(end) = self.run.next_state()
+        {
+            self.end = Some(end);
+            return None;
+        }
+        Some(self.run.state())
+    }
+
     /// Why the trial ended; `None` while it goes on.
     pub fn end(&self) -> Option<End> {
         self.end
@@ -58,15 +73,7 @@ impl Iterator for Trial {
     type Item = Snapshot;
 
     fn next(&mut self) -> Option<Snapshot> {
-        if self.end.is_some() {
-            return None;
-        }
-        if std::mem::replace(&mut self.begun, true)
-            && let Err(end) = self.run.next_state()
-        {
-            self.end = Some(end);
-            return None;
-        }
+        self.next_state()?;
         Some(self.snapshot())
     }
 }
