@@ -1,0 +1,159 @@
+//! Checks: sampling on a thread of its own, while this one looks for signals of Python, such as the stop button of a notebook.
+
+use super::raised;
+use pyo3::prelude::*;
+use smc::engine::Watch;
+use smc::report::Format;
+use smc::{Diagnostics, Model, Options, Report as Found};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+/// Stack of the thread that samples: deep formulas are walked recursively.
+const STACK: usize = 256 << 20;
+/// Between two looks for signals.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Options of a check.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Settings {
+    seed: u64,
+    threads: Option<usize>,
+    max_trials: Option<u64>,
+    timeout: Option<f64>,
+    only: Vec<String>,
+    evidence: bool,
+}
+
+impl Settings {
+    fn options(&self) -> Options {
+        let mut options = Options::default().seed(self.seed).evidence(self.evidence);
+        if let Some(threads) = self.threads {
+            options = options.threads(threads);
+        }
+        if let Some(most) = self.max_trials {
+            options = options.max_trials(most);
+        }
+        if let Some(time) = self.timeout.and_then(|time| Duration::try_from_secs_f64(time).ok()) {
+            options = options.timeout(time);
+        }
+        self.only.iter().fold(options, |options, one| options.only(one))
+    }
+}
+
+/// What the thread that samples tells.
+enum Told {
+    /// A query, its trials so far, and those that are expected.
+    Consumed(String, u64, Option<u64>),
+    Done(Box<Result<Found, Diagnostics>>),
+}
+
+/// Tells how far a query is, if anybody wants to know.
+struct Teller(Option<Sender<Told>>);
+
+impl Watch for Teller {
+    fn consumed(&self, query: &str, trials: u64, of: Option<u64>) {
+        if let Some(sender) = &self.0 {
+            let _ = sender.send(Told::Consumed(query.to_owned(), trials, of));
+        }
+    }
+}
+
+/// The results of a check.
+#[pyclass(frozen, module = "smc._smc")]
+pub struct Report {
+    found: Found,
+    model: Model,
+    properties: Vec<(String, String)>,
+    options: Options,
+    page: OnceLock<Result<String, Diagnostics>>,
+}
+
+#[pymethods]
+impl Report {
+    /// As `--format json` writes it.
+    fn json(&self) -> String {
+        self.found.render(Format::Json)
+    }
+
+    /// As the program prints it.
+    fn text(&self) -> String {
+        self.found.to_string()
+    }
+
+    /// Warnings about the texts.
+    fn warnings(&self) -> String {
+        self.found.warnings().to_string()
+    }
+
+    /// Whether every check is satisfied and every other query got what it asks.
+    fn is_satisfied(&self) -> bool {
+        self.found.is_satisfied()
+    }
+
+    /// The page of `--report`; the trials behind the results run again.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let make = || self.model.page(&borrowed(&self.properties), &self.options, &self.found);
+        let page = py.detach(|| self.page.get_or_init(make).clone());
+        page.map_err(|found| raised(py, &found))
+    }
+}
+
+fn borrowed(properties: &[(String, String)]) -> Vec<(&str, &str)> {
+    properties.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect()
+}
+
+/// Answers the queries of property files. An interruption by Python ends sampling, and the report says what was found so far.
+pub(super) fn check(
+    py: Python<'_>,
+    model: &Model,
+    properties: Vec<(String, String)>,
+    settings: &Settings,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Report> {
+    let options = settings.options();
+    let budget = Arc::new(options.budget());
+    let (sender, told) = channel();
+    let is_told = progress.is_some();
+    let work = {
+        let (model, options, properties) = (model.clone(), options.clone(), properties.clone());
+        let budget = Arc::clone(&budget);
+        move || {
+            let teller = Teller(is_told.then(|| sender.clone()));
+            let found = model.check_files(&borrowed(&properties), &options, &budget, &teller);
+            let _ = sender.send(Told::Done(Box::new(found)));
+        }
+    };
+    std::thread::Builder::new().stack_size(STACK).spawn(work)?;
+    let told = Mutex::new(told);
+    let next = || told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
+    let mut failed = None;
+    let found = loop {
+        match py.detach(next) {
+            Ok(Told::Done(found)) => break *found,
+            Ok(Told::Consumed(query, trials, of)) => {
+                if let Some(progress) = &progress
+                    && let Err(error) = progress.call1(py, (query, trials, of))
+                {
+                    failed = Some(error);
+                    budget.interrupt();
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(pyo3::exceptions::PyRuntimeError::new_err(
+                    "this is a bug in smc; please report it",
+                ));
+            }
+        }
+        if py.check_signals().is_err() {
+            budget.interrupt();
+        }
+    };
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    let found = found.map_err(|found| raised(py, &found))?;
+    Ok(Report { found, model: model.clone(), properties, options, page: OnceLock::new() })
+}
