@@ -14,4 +14,13 @@ from .model import Model
 from .report import Report, Result
 from .trial import Trial
 
-__all__ = ["Diagnostics", "Model", "Report", "Result", "Trial", "__version__"]
+
+def __getattr__(name: str):
+    # Numpy, and Gymnasium where that is installed, take longer to import than all the rest.
+    if name == "Env":
+        from .env import Env
+
+        return Env
+    raise AttributeError(f"module `smc` has no attribute `{name}`")
+
+__all__ = ["Diagnostics", "Env", "Model", "Report", "Result", "Trial", "__version__"]

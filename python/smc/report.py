@@ -75,9 +75,10 @@ class Result:
         return self._fields
 
     def __repr__(self) -> str:
-        shown = self.verdict or self.estimate
+        low, high = ("unknown" if end is None else f"{end:.4g}" for end in (self.low, self.high))
+        shown = self.verdict or ("nothing" if self.estimate is None else f"{self.estimate:.4g}")
         unit = f" {self._fields['unit']}" if self._fields["unit"] else ""
-        return f"<smc.Result {self.query!r}: {shown}, {self.low} .. {self.high}{unit}>"
+        return f"<smc.Result {self.query!r}: {shown}, {low} .. {high}{unit}>"
 
 
 class Report:

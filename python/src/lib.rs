@@ -5,6 +5,7 @@
 
 mod check;
 mod model;
+mod stage;
 mod trial;
 
 use pyo3::prelude::*;
@@ -44,5 +45,6 @@ fn _smc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<model::Model>()?;
     module.add_class::<check::Report>()?;
+    module.add_class::<stage::Stage>()?;
     module.add_function(wrap_pyfunction!(command, module)?)
 }

@@ -1,6 +1,7 @@
 //! A model that was parsed, with the files that it reads.
 
 use super::check::{self, Report, Settings};
+use super::stage::Stage;
 use super::{raised, trial};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -85,6 +86,11 @@ impl Model {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Report> {
         check::check(py, &self.parsed, properties, &settings, progress)
+    }
+
+    /// A stage on which an agent is driven, and a query is asked of each episode.
+    fn stage(&self, py: Python<'_>, agent: &str, query: Option<&str>, neighbours: usize) -> PyResult<Stage> {
+        Stage::new(py, &self.parsed, (agent, query), neighbours)
     }
 
     /// Trials of a seed as a page with a player.

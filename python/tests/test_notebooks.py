@@ -13,6 +13,7 @@ for library in ("ipykernel", "matplotlib", "pandas", "pedpy"):
 SHOWN = {
     "corridor": ["satisfied", "chosen", "<iframe sandbox="],
     "sweep": ["density", "image/png"],
+    "controller": ["certified: P(safe) in", "distance(robot, a) > 0.7 m"],
     "recording": ["people, mean speed", "P(G<=4.8 s", "simulated: "],
 }
 

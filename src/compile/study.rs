@@ -203,6 +203,14 @@ pub enum Ask {
 }
 
 impl Ask {
+    /// The column that a check or an estimate is about.
+    pub fn target(&self) -> Option<Target> {
+        match self {
+            Self::Check { measure, .. } | Self::Estimate { measure, .. } => Some(measure.target),
+            Self::Rank { .. } | Self::Compare { .. } => None,
+        }
+    }
+
     /// The worlds that are asked about.
     pub fn worlds(&self) -> Vec<usize> {
         match self {

@@ -170,6 +170,19 @@ impl<'p> Run<'p> {
         }
     }
 
+    /// Drives an agent of a trial alone with a velocity, m/s, in the next step.
+    pub fn drive(&mut self, agent: AgentId, velocity: Vec2) {
+        let slot = self.state.slot(agent.0 as usize, 0);
+        let (speed, driving) = (velocity.norm(), &mut self.state.driving);
+        let put = |field: &mut [Lanes], value| field[slot.block].0[slot.lane] = value;
+        put(&mut driving.speed, speed);
+        if speed > 0.0 {
+            put(&mut driving.ex, velocity.x / speed);
+            put(&mut driving.ey, velocity.y / speed);
+            driving.move_on(slot);
+        }
+    }
+
     /// The variables of processes of a trial alone, in their order.
     pub fn put(&mut self, values: &[f64]) {
         for (variable, value) in self.state.variables.iter_mut().zip(values) {

@@ -5,6 +5,7 @@
 //! command line shows them: [`Diagnostics`].
 
 mod diagnostics;
+mod episode;
 mod front;
 mod laws;
 mod model;
@@ -18,6 +19,7 @@ mod trial;
 mod ways;
 
 pub use diagnostics::{Diagnostics, findings};
+pub use episode::{Episode, Stage};
 pub use front::{Folder, Inputs, Names, Parsed, load, parse};
 pub use model::{Draft, Model};
 pub use options::{Options, chosen};

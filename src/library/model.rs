@@ -301,7 +301,7 @@ impl Model {
     }
 
     /// Compiles property files with the scenario, surveys the ways, and does some work on what they ask; and the texts.
-    fn ask<R>(
+    pub(super) fn ask<R>(
         &self,
         properties: &[(&str, &str)],
         options: &Options,
@@ -404,9 +404,9 @@ impl Model {
 }
 
 /// Queries that were compiled with their scenario.
-struct Asked<'a> {
-    study: &'a Study,
-    call: &'a Call<'a>,
+pub(super) struct Asked<'a> {
+    pub(super) study: &'a Study,
+    pub(super) call: &'a Call<'a>,
     /// Warnings about the texts and about ways.
     inputs: &'a [Diagnostic],
     prints: &'a [(String, Fingerprint)],
