@@ -243,6 +243,7 @@ fn wrong_declarations_are_refused() {
         ("{seed} {width", SIGNAL, "", "error[E0411]: `{width` opens a brace"),
         ("{seed}", "trace = xml", "", "error[E0305]: expected `csv` or `jsonl`"),
         ("{seed}", "ends = held\nlimit = 0 s", "", "error[E0305]: expected a value above 0"),
+        ("{seed}", "ends = held; ends = held", "", "error[E0202]: `ends` is set twice"),
         ("{seed}", "speed = 3", "", "error[E0207]: unknown field `speed`"),
         (
             "{seed}",

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from . import _smc
+from .errors import Diagnostics
 from .progress import bar
 from .report import Report
 from .tracks import csv_of
@@ -112,6 +113,9 @@ class Model:
             files.append(("text.bltl", text))
         if not files:
             raise TypeError("name a property file, or write `text=\"check P(…) >= 0.9\"`")
+        for option, value, least in (("threads", threads, 1), ("max_trials", max_trials, 1), ("timeout", timeout, 0)):
+            if value is not None and not value >= least:
+                raise ValueError(f"`{option}` must be at least {least} (got {value})")
         settings = {
             "seed": seed,
             "threads": threads,
@@ -137,7 +141,10 @@ class Model:
 
     def trials(self, indices: Iterable[int], *, seed: int = 0, threads: int | None = None) -> list[Trial]:
         """Several trials, run in parallel."""
-        found = self._inner.trials(seed, list(indices), threads)
+        indices = list(indices)
+        if any(index >= 1 << 48 for index in indices):
+            raise ValueError(f"trials are numbered from 0 to {(1 << 48) - 1}")
+        found = self._inner.trials(seed, indices, threads)
         return [Trial(self._inner, seed, one) for one in found]
 
     def __repr__(self) -> str:
@@ -156,7 +163,11 @@ def _again(cls, parts):
 
 
 def _text(name: str) -> str:
-    return Path(name).read_text(encoding="utf-8")
+    try:
+        return Path(name).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        text = f"{name} is not UTF-8: byte {error.start}"
+        raise Diagnostics(f"error[E0107]: {text}", [("E0107", name, 0, 0, text, "save the file as UTF-8")]) from None
 
 
 def _written(value) -> str:

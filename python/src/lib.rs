@@ -10,6 +10,8 @@ mod trial;
 
 use pyo3::prelude::*;
 use smc::Diagnostics;
+use smc::kernel::End;
+use smc::model::Scenario;
 
 /// Errors of texts as an exception of Python.
 fn raised(py: Python<'_>, found: &Diagnostics) -> PyErr {
@@ -31,6 +33,16 @@ fn raised(py: Python<'_>, found: &Diagnostics) -> PyErr {
     match made {
         Ok(error) => PyErr::from_value(error),
         Err(error) => error,
+    }
+}
+
+/// Why a trial ended before its horizon, if it did.
+fn ended(scenario: &Scenario, end: End) -> Option<String> {
+    match end {
+        End::Horizon => None,
+        End::Diverged => Some("diverged".to_owned()),
+        End::Full => Some("a source has more arrivals than places".to_owned()),
+        End::Faulty(fault) => Some(fault.describe(scenario)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Episodes in which Python drives an agent, step by step.
 
-use super::raised;
+use super::{ended, raised};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -62,12 +62,7 @@ impl Stage {
         let rows = PyArray1::from_vec(py, rows).reshape([1 + self.neighbours, 5])?;
         let time = self.scenario.clock.seconds(smc::base::tick::Tick(state.ticks[0]));
         let is_over = episode.end() == Some(End::Horizon);
-        let ended = match episode.end() {
-            None | Some(End::Horizon) => None,
-            Some(End::Diverged) => Some("diverged".to_owned()),
-            Some(End::Full) => Some("a source has more arrivals than places".to_owned()),
-            Some(End::Faulty(fault)) => Some(fault.describe(&self.scenario)),
-        };
+        let ended = episode.end().and_then(|end| ended(&self.scenario, end));
         let is_here = own.is_some();
         Ok((rows, time, (is_here, is_over), ended, episode.worth()))
     }

@@ -1,6 +1,6 @@
 //! Trials as arrays.
 
-use super::raised;
+use super::{ended, raised};
 use numpy::{PyArray1, PyArrayMethods, ToPyArray as _};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -67,15 +67,6 @@ impl Rows {
         self.variables.extend(state.variables.iter().map(|lanes| lanes.0[lane]));
     }
 
-    fn end(&mut self, scenario: &Scenario, end: End) {
-        self.ended = match end {
-            End::Horizon => None,
-            End::Diverged => Some("diverged".to_owned()),
-            End::Full => Some("a source has more arrivals than places".to_owned()),
-            End::Faulty(fault) => Some(fault.describe(scenario)),
-        };
-    }
-
     /// Runs some trials side by side.
     fn of(model: &Model, program: &Program, seed: u64, indices: &[u64]) -> Result<Vec<Self>, Diagnostics> {
         let scenario = model.scenario();
@@ -96,7 +87,7 @@ impl Rows {
                     rows[lane].add(scenario, run.state(), lane);
                 }
                 if let Some(end) = end {
-                    rows[lane].end(scenario, end);
+                    rows[lane].ended = ended(scenario, end);
                     run.clear(Mask::lane(lane));
                 }
             }

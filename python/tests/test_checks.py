@@ -85,6 +85,9 @@ def test_errors_are_those_of_the_command_line(small, tmp_path, program):
         small.with_(n="2 parsek")
     with pytest.raises(TypeError):
         small.check()
+    (tmp_path / "latin.scn").write_bytes(b"\xff\xfe")
+    with pytest.raises(smc.Diagnostics, match="is not UTF-8"):
+        smc.Model(tmp_path / "latin.scn")
     with pytest.raises(FileNotFoundError):
         smc.Model("nowhere.scn")
     with pytest.raises(smc.Diagnostics, match="no query is about"):

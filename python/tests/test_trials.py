@@ -115,6 +115,11 @@ def test_wrong_types_are_exceptions(small):
         small.trial("first")
     with pytest.raises(ValueError):
         small.trials([0, 1], threads=0)
+    with pytest.raises(ValueError, match="numbered from 0"):
+        small.trial(1 << 48)
+    for wrong in ({"timeout": -1}, {"timeout": math.nan}, {"max_trials": 0}, {"threads": 0}):
+        with pytest.raises(ValueError, match="must be at least"):
+            small.check(text="estimate P(F<=1 s contact(user))", **wrong)
     with pytest.raises((TypeError, OverflowError)):
         small.check(text="estimate P(F<=1 s contact(user))", seed=-3)
     with pytest.raises(smc.Diagnostics):

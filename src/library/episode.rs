@@ -43,10 +43,11 @@ impl Model {
         let scenario = self.scenario();
         let Some(number) = scenario.agents.iter().position(|one| one.name == agent) else {
             let names: Vec<&str> = scenario.agents.iter().take(8).map(|one| one.name.as_str()).collect();
-            return refuse(
-                format!("there is no agent `{agent}`"),
-                format!("the agents are {}", names.join(", ")),
-            );
+            let hint = match names.as_slice() {
+                [] => "the scenario has no agents".to_owned(),
+                names => format!("the agents are {}", names.join(", ")),
+            };
+            return refuse(format!("there is no agent `{agent}`"), hint);
         };
         let body = &scenario.agents[number].body;
         if body.planner.is_some() || body.stepper.is_some() || scenario.clock.is_jumps() {

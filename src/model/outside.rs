@@ -62,24 +62,21 @@ pub struct ShownPeople {
 impl Outside {
     /// The call of a trial, word by word.
     pub fn call(&self, seed: u64, trial: u64, option: &str) -> Vec<String> {
-        let piece = |piece: &CallPart| match piece {
-            CallPart::Text(text) => text.clone(),
-            CallPart::Seed => seed.to_string(),
-            CallPart::Trial => trial.to_string(),
-            CallPart::Move => option.to_owned(),
-        };
-        self.words.iter().map(|word| word.iter().map(piece).collect()).collect()
+        self.said(&seed.to_string(), &trial.to_string(), option)
     }
 
     /// The call as it is told: with names in the place of what differs from trial to trial.
     pub fn told(&self) -> String {
-        let piece = |piece: &CallPart| match piece {
+        self.said("{seed}", "{trial}", "{move}").join(" ")
+    }
+
+    fn said(&self, seed: &str, trial: &str, option: &str) -> Vec<String> {
+        let part = |part: &CallPart| match part {
             CallPart::Text(text) => text.clone(),
-            CallPart::Seed => "{seed}".to_owned(),
-            CallPart::Trial => "{trial}".to_owned(),
-            CallPart::Move => "{move}".to_owned(),
+            CallPart::Seed => seed.to_owned(),
+            CallPart::Trial => trial.to_owned(),
+            CallPart::Move => option.to_owned(),
         };
-        let words: Vec<String> = self.words.iter().map(|word| word.iter().map(piece).collect()).collect();
-        words.join(" ")
+        self.words.iter().map(|word| word.iter().map(part).collect()).collect()
     }
 }

@@ -103,6 +103,12 @@ pub(crate) fn program<'a>(
         context.note(error.hint("write a scenario for each, and `compare` results by their intervals"));
     }
     alone(context, file, decl);
+    for (k, field) in decl.body.iter().enumerate() {
+        if let Some(first) = decl.body[..k].iter().find(|first| first.name.name == field.name.name) {
+            let error = error!(E0202, field.name.span, "`{}` is set twice", field.name.name);
+            context.note(error.related(first.name.span, "first set here").hint("remove one of them"));
+        }
+    }
     people::only(context, &decl.body.iter().collect::<Vec<_>>(), &FIELDS);
     let words = words(context, decl);
     let format = word(context, decl, "trace", &TraceForm::ALL.map(|(name, _)| name));
