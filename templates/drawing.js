@@ -118,6 +118,9 @@ class Drawing {
     for (const region of scene.regions) {
       this.label(region.name, ...this.at(...middle(region.shape)), inks.soft);
     }
+    for (const { name, box } of scene.islands) {
+      this.label(name, ...this.at((box[0] + box[2]) / 2000, box[3] / 1000 + 1), inks.ink);
+    }
     for (const point of scene.points) {
       const [x, y] = this.at(point.at[0] / 1000, point.at[1] / 1000);
       pen.fillStyle = inks.soft;

@@ -97,6 +97,20 @@ function play(data) {
     return row;
   }
 
+  // Shows one level or flight of stairs alone.
+  function tab({ name, box }) {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.textContent = name;
+    const [left, low, right, high] = box.map((part) => part / 1000);
+    button.addEventListener('click', () => {
+      drawing.fit({ left: left - 1, low: low - 1, right: right + 1, high: high + 1 });
+      drawing.isWhole = false;
+      draw();
+    });
+    return button;
+  }
+
   function show(number) {
     stop();
     entry = data.entries[number];
@@ -117,6 +131,7 @@ function play(data) {
     byId('scene').parentElement.hidden = trace.frames === 0 || scene.agents + trace.tracks.length === 0;
     byId('view').hidden = byId('scene').parentElement.hidden;
     range.max = end();
+    byId('levels').replaceChildren(...scene.islands.map(tab));
     cursors = [];
     byId('bars').replaceChildren(...entry.bars.map(bar));
     if (trace.frames > 0) {

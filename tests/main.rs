@@ -72,6 +72,7 @@ mod splitting;
 mod start;
 mod statistics;
 mod stepped;
+mod storeys;
 mod tables;
 mod texts;
 mod tracks;

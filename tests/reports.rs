@@ -63,6 +63,7 @@ fn checks() -> Vec<QueryResult> {
                 decider: Some(Decider {
                     agent: "oncoming[4]".into(),
                     place: [9.2, 1.4],
+                    level: None,
                     value: Some(0.03),
                     unit: "m".into(),
                     against: None,

@@ -32,7 +32,7 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
                 }
             }
             Item::Scene(items) => {
-                for item in items {
+                for item in items.iter().flat_map(SceneItem::on_all_levels) {
                     if let SceneItem::Import { path, .. } = item {
                         found.push(data(path.value.clone(), path.span));
                     }

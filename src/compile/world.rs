@@ -178,13 +178,11 @@ fn build<'a>(context: &mut Context<'a>, file: &'a ScenarioFile, files: &Files) -
     context.tracks.site.clone_from(&files.site);
     context.tracks.columns.clone_from(&files.columns);
     stepping::settle_gaits(context, file, files);
-    let (mut barrier, mut line) = (0, 0);
-    let mut doors = Vec::new();
-    for item in &file.items {
-        if let Item::Scene(items) = item {
-            doors.extend(scene::settle_scene(context, items, files, (&mut barrier, &mut line)));
-        }
-    }
+    let scenes = file.items.iter().filter_map(|item| match item {
+        Item::Scene(items) => Some(items.as_slice()),
+        _ => None,
+    });
+    let doors = scene::settle(context, &scenes.collect::<Vec<_>>(), files);
     let changing = scene::doors::set(context, &doors);
     let mut people = People::default();
     for item in &file.items {

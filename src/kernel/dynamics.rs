@@ -173,6 +173,10 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
         let from = (scratch.seen_x.as_slice(), scratch.seen_y.as_slice());
         program.passing.step(scratch.level, state, from, &scratch.moving);
     }
+    if !program.stairwells.is_empty() {
+        let Scratch { seen_x, seen_y, moving, .. } = scratch;
+        program.stairwells.carry(program, state, (seen_x, seen_y), moving);
+    }
     // Who comes to a place that is left in this step has not made it.
     for (moving, &here) in scratch.moving.iter_mut().zip(&state.present) {
         *moving &= here;

@@ -33,6 +33,7 @@ pub mod run;
 mod speed;
 pub mod start;
 pub mod state;
+mod storeys;
 pub mod tape;
 mod vector;
 

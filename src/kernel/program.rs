@@ -12,6 +12,7 @@ use super::passing::Passing;
 use super::process::Processes;
 use super::start::{Arrivals, Starts};
 use super::state::{Layout, State};
+use super::storeys::Stairwells;
 use crate::model::Scenario;
 use std::sync::Arc;
 
@@ -52,6 +53,8 @@ pub struct Program {
     pub behaviours: Behaviours,
     /// The lines and regions that formulas ask about.
     pub passing: Passing,
+    /// Levels and stairs.
+    pub stairwells: Stairwells,
 }
 
 impl Program {
@@ -74,6 +77,7 @@ impl Program {
         let processes = Processes::new(&scenario);
         let arrivals = Arrivals::new(&scenario);
         let passing = Passing::new(&scenario.scene);
+        let stairwells = Stairwells::new(&scenario.scene);
         let doors = Doors::new(&scenario);
         let behaviours = Behaviours::new(&scenario, &mut drive);
         Self {
@@ -90,6 +94,7 @@ impl Program {
             doors,
             behaviours,
             passing,
+            stairwells,
         }
     }
 

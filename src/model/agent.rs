@@ -46,6 +46,8 @@ pub struct Body {
     pub stepper: Option<Arc<Stepper>>,
     /// How long it stands before it sets out on its route, s.
     pub premovement: Option<Law>,
+    /// Its speed on stairs, as a share of that of their table.
+    pub stairs: f64,
     laws: [Law; Parameter::COUNT],
 }
 
@@ -53,7 +55,7 @@ impl Body {
     /// Of a kind, with these laws; it finds its way.
     pub fn new(kind: Kind, law: impl FnMut(Parameter) -> Law) -> Self {
         let laws = Parameter::ALL.map(law);
-        Self { kind, finds_ways: true, planner: None, stepper: None, premovement: None, laws }
+        Self { kind, finds_ways: true, planner: None, stepper: None, premovement: None, stairs: 1.0, laws }
     }
 
     /// The number of the draw of a parameter: its own, but for a preferred speed that is a share of the largest one.

@@ -37,6 +37,8 @@ pub enum Field {
     Leg(LegMeasure, u32),
     /// How far others are.
     Separation(Separation),
+    /// Number of the level or stairs on which it is, among the islands of the scene.
+    Storey,
     /// Number of the state of a behaviour, from 0; -1 in someone who has no such behaviour.
     Mode(BehaviourId),
     /// A column of the recording that is shown, by its number; unresolved in who has none, as in every simulated trial.
@@ -300,7 +302,7 @@ impl Field {
             Self::VelocityX | Self::VelocityY => Some(Dimension::SPEED),
             Self::DoneAt | Self::Dwell(_) => Some(Dimension::TIME),
             Self::Leg(measure, _) => dimension(Signature::Special(Special::Leg(measure))),
-            Self::Column(_) => Some(Dimension::NONE),
+            Self::Column(_) | Self::Storey => Some(Dimension::NONE),
             field => dimension(Signature::Agent(field)),
         }
     }

@@ -21,6 +21,7 @@ pub mod scene;
 pub mod sight;
 pub mod source;
 pub mod stepper;
+pub mod storeys;
 pub mod visit;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
@@ -42,3 +43,4 @@ pub use scene::{Barrier, BarrierId, Line, LineId, Obstacle, Region, RegionId, Sc
 pub use sight::{Piece, Sight};
 pub use source::Source;
 pub use stepper::{GaitRule, SearchRule, Stepper};
+pub use storeys::{Island, Portal, Storeys};

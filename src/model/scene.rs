@@ -2,6 +2,7 @@
 
 use super::agent::Goal;
 use super::period::Periods;
+use super::storeys::Storeys;
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -37,6 +38,8 @@ pub struct Scene {
     pub timed: BTreeSet<RegionId>,
     /// The walls that doors are while they are closed, of those that open or close during a trial.
     pub doors: Vec<BarrierId>,
+    /// Levels and stairs.
+    pub storeys: Storeys,
 }
 
 impl Scene {
@@ -156,7 +159,7 @@ impl Region {
 
 impl Barrier {
     /// The same somewhere else.
-    fn moved(&self, way: Vec2) -> Self {
+    pub fn moved(&self, way: Vec2) -> Self {
         let obstacle = match &self.obstacle {
             Obstacle::Wall(segments) => {
                 Obstacle::Wall(segments.iter().map(|s| Segment::new(s.a + way, s.b + way)).collect())

@@ -217,6 +217,7 @@ fn witness(witness: &Witness, against: bool) -> Value {
         let value = decider.value.filter(|value| value.is_finite());
         joined([
             json!({ "agent": decider.agent, "place": decider.place }),
+            optional("level", decider.level.as_ref()),
             value.map_or(Value::Null, |value| json!({ "value": value, "unit": decider.unit })),
             optional("other", decider.other.as_ref()),
         ])

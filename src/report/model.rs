@@ -11,7 +11,7 @@ use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{
     Agent, AgentId, Family, GaitRule, Goal, Law, Leg, Move, Obstacle, Outside, Parameter, Particle, Position,
-    RoadmapRule, Route, Scenario, SearchRule,
+    RoadmapRule, Route, Scenario, Scene, SearchRule,
 };
 use crate::stats::Chosen;
 use std::fmt::Write;
@@ -103,6 +103,7 @@ fn scene(scenario: &Scenario) -> String {
             let _ = writeln!(out, "  periodic {axis}: {} .. {} m", number(period.low), number(period.high()));
         }
     }
+    storeys(&mut out, scene);
     for (k, barrier) in scenario.scene.barriers.iter().enumerate() {
         let name = if barrier.name.is_empty() { String::new() } else { format!(" {}", barrier.name) };
         if scene.doors.iter().any(|door| door.0 as usize == k) {
@@ -114,20 +115,67 @@ fn scene(scenario: &Scenario) -> String {
                 let length = number(segments.iter().map(Segment::length).sum());
                 writeln!(out, "  wall{name}: {}, {length} m", counted(segments.len() as u64, "segment"))
             }
-            Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(solid)),
+            Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(&own(scene, solid))),
         };
     }
     for region in scenario.scene.regions.iter().filter(|region| region.is_declared()) {
-        let _ = writeln!(out, "  region {}: {}", region.name, shape(&region.shape));
+        let _ = writeln!(out, "  region {}: {}", region.name, shape(&own(scene, &region.shape)));
     }
     for (name, at) in &scenario.scene.points {
-        let _ = writeln!(out, "  point {name}: {} m", point(*at));
+        let _ =
+            writeln!(out, "  point {name}: {} m", point(scene.storeys.local(*at).map_or(*at, |(_, at)| at)));
     }
     for line in &scenario.scene.lines {
         let Segment { a, b } = line.segment;
+        let [a, b] = [a, b].map(|p| scene.storeys.local(p).map_or(p, |(_, p)| p));
         let _ = writeln!(out, "  line {}: {} -- {} m", line.name, point(a), point(b));
     }
     out
+}
+
+/// Levels and stairs; coordinates are those on each level.
+fn storeys(out: &mut String, scene: &Scene) {
+    let storeys = &scene.storeys;
+    for (k, island) in storeys.islands.iter().enumerate() {
+        if let Some(height) = island.height {
+            let _ = writeln!(out, "  level {}: height {} m", island.name, number(height));
+            continue;
+        }
+        let into: Vec<_> = storeys.portals.iter().filter(|portal| portal.islands[1] as usize == k).collect();
+        let [up, down] = into[..] else { continue };
+        let [low, high] = [up, down].map(|portal| storeys.islands[portal.islands[0] as usize].name.as_str());
+        let size = island.bounds.high - island.bounds.low;
+        let (run, width) = (number(size.x), number(size.y));
+        let speeds = [up, down].map(|portal| number((portal.speed * 1000.0).round() / 1000.0));
+        let name = &island.name;
+        let _ = writeln!(
+            out,
+            "  stairs {name}: from {low} to {high}, {run} m long in the plan, {width} m wide, at {} of the speed up and {} down",
+            speeds[0], speeds[1]
+        );
+    }
+}
+
+/// The name of the level on which a place lies, with a blank; nothing without levels.
+fn level(scene: &Scene, p: Vec2) -> String {
+    scene.storeys.local(p).map_or(String::new(), |(island, _)| format!("{} ", island.name))
+}
+
+/// A place on its level.
+fn place(scene: &Scene, p: Vec2) -> String {
+    format!("{}{}", level(scene, p), point(scene.storeys.local(p).map_or(p, |(_, own)| own)))
+}
+
+/// A shape in the coordinates of its level.
+fn own(scene: &Scene, shape: &Shape) -> Shape {
+    let own = |part: &Shape| {
+        let at = part.inner_point();
+        scene.storeys.local(at).map_or_else(|| part.clone(), |(_, own)| part.moved(own - at))
+    };
+    match shape {
+        Shape::Parts(parts) => Shape::Parts(parts.iter().map(own).collect()),
+        part => own(part),
+    }
 }
 
 /// The members of one declaration that differ only in their number, together.
@@ -237,8 +285,12 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
         );
     }
     let place = match &agent.start.position {
-        Position::Point(p) => point(*p),
-        Position::Within(s) => format!("anywhere in {}", shape(s)),
+        Position::Point(p) => place(&scenario.scene, *p),
+        Position::Within(s) => format!(
+            "anywhere in {}{}",
+            level(&scenario.scene, s.inner_point()),
+            shape(&own(&scenario.scene, s))
+        ),
         Position::Near { agent, within } => {
             format!("within {} m of {}", number(*within), scenario.agents[agent.0 as usize].name)
         }

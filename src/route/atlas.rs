@@ -15,7 +15,7 @@ const CLASS: f64 = 0.05;
 
 /// A map whose values are made once.
 #[derive(Debug)]
-struct Store<K, V>(Mutex<BTreeMap<K, Arc<OnceLock<V>>>>);
+pub(super) struct Store<K, V>(Mutex<BTreeMap<K, Arc<OnceLock<V>>>>);
 
 impl<K, V> Default for Store<K, V> {
     fn default() -> Self {
@@ -25,7 +25,7 @@ impl<K, V> Default for Store<K, V> {
 
 impl<K: Ord, V> Store<K, V> {
     /// The place of a value; who asks for it first makes it while others wait.
-    fn place(&self, key: K) -> Arc<OnceLock<V>> {
+    pub(super) fn place(&self, key: K) -> Arc<OnceLock<V>> {
         // A thread that panicked left a whole map behind.
         let mut map = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         map.entry(key).or_default().clone()
@@ -33,14 +33,17 @@ impl<K: Ord, V> Store<K, V> {
 }
 
 /// The goal of a field, so that it can be looked up: a region, or the bits of a point.
-type GoalKey = (Option<u32>, [u64; 2]);
+pub(super) type GoalKey = (Option<u32>, [u64; 2]);
 
-fn key(goal: &Goal) -> GoalKey {
+pub(super) fn key(goal: &Goal) -> GoalKey {
     match goal {
         Goal::Region(id) => (Some(id.0), [0; 2]),
         Goal::Point(point) => (None, [point.x.to_bits(), point.y.to_bits()]),
     }
 }
+
+/// From which portals ways lead to one, and how long they are as lengths on a level, m.
+pub(super) type Arcs = Vec<(usize, f64)>;
 
 /// The network of one radius with its fields.
 #[derive(Debug)]
@@ -79,12 +82,22 @@ pub struct Atlas {
     scene: Scene,
     sight: Arc<Sight>,
     sheets: Store<u64, Sheet>,
+    /// The ways of each island of a scene with levels.
+    pub(super) islands: Vec<Self>,
+    /// The ways on one island between portals, by radius and share of the speed on stairs.
+    pub(super) arcs: Store<(u64, u64), Vec<Arcs>>,
+    /// The time from behind each portal to a goal.
+    pub(super) behind: Store<(GoalKey, u64, u64), Vec<f64>>,
 }
 
 impl Atlas {
     /// Of a scene.
     pub fn new(scene: Scene) -> Self {
-        Self { sight: Arc::new(Sight::new(&scene)), scene, sheets: Store::default() }
+        let islands = (0..scene.storeys.islands.len()).map(|island| Self::new(scene.island(island)));
+        let islands = islands.collect();
+        let sight = Arc::new(Sight::new(&scene));
+        let (sheets, arcs, behind) = (Store::default(), Store::default(), Store::default());
+        Self { scene, sight, sheets, islands, arcs, behind }
     }
 
     /// The radius for which ways of a body are looked up, m: its own, or where it is drawn, the next multiple of 5 cm.
@@ -92,8 +105,22 @@ impl Atlas {
         if is_drawn { (radius / CLASS - 1e-9).ceil() * CLASS } else { radius }
     }
 
-    /// The shortest way of a body of a radius, m, from a place to a goal; `None` if there is none.
+    /// The shortest way of a body of a radius, m, from a place to a goal; `None` if there is none. On stairs its speed is that of
+    /// their tables.
     pub fn way(&self, from: Vec2, goal: &Goal, radius: f64) -> Option<ShortestWay> {
+        self.way_of((radius, 1.0), from, goal)
+    }
+
+    /// The same for a body with another share of the speeds on stairs.
+    pub(super) fn way_of(
+        &self,
+        (radius, climbs): (f64, f64),
+        from: Vec2,
+        goal: &Goal,
+    ) -> Option<ShortestWay> {
+        if !self.islands.is_empty() {
+            return self.way_over_stairs(from, goal, radius, climbs);
+        }
         let sheet = self.sheets.place(radius.to_bits());
         let sheet = sheet.get_or_init(|| {
             let network = Network::new(self.sight.clone(), radius);

@@ -9,6 +9,7 @@ mod circle;
 mod field;
 mod goal;
 mod network;
+mod storeys;
 mod survey;
 mod tangent;
 #[cfg(test)]

@@ -91,7 +91,7 @@ fn number(v: f64) -> f64 {
 fn goal_name(scene: &Scene, goal: &Goal) -> String {
     match goal {
         Goal::Region(id) => format!("`{}`", scene.regions[id.0 as usize].name),
-        Goal::Point(p) => format!("({}, {}) m", number(p.x), number(p.y)),
+        Goal::Point(p) => scene.storeys.place(*p),
     }
 }
 

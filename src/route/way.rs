@@ -35,6 +35,8 @@ pub struct ShortestWay {
     pub bends: Vec<Bend>,
     /// Where it ends, m.
     pub end: Vec2,
+    /// The portal at which it ends, if it leads on over stairs, and a place behind its line, m.
+    pub over: Option<(usize, Vec2)>,
     /// Whether it leads straight to the nearest place of the goal.
     pub is_straight: bool,
 }
@@ -61,7 +63,12 @@ impl Bend {
 impl ShortestWay {
     /// Points to head for one after the other; the last one is the end.
     pub fn points(&self) -> Vec<Vec2> {
-        self.bends.iter().flat_map(Bend::corners).chain([self.end]).collect()
+        self.bends
+            .iter()
+            .flat_map(Bend::corners)
+            .chain([self.end])
+            .chain(self.over.map(|(_, beyond)| beyond))
+            .collect()
     }
 }
 
@@ -77,7 +84,13 @@ impl Network {
     /// The shortest way from a place to the goal of a field; `None` if there is none.
     pub(super) fn way(&self, field: &Field, p: Vec2) -> Option<ShortestWay> {
         if field.entry.holds(p) {
-            return Some(ShortestWay { length: 0.0, bends: Vec::new(), end: p, is_straight: true });
+            return Some(ShortestWay {
+                length: 0.0,
+                bends: Vec::new(),
+                end: p,
+                over: None,
+                is_straight: true,
+            });
         }
         let mut options: Vec<FirstPiece> = Vec::new();
         let direct = |(to, length)| FirstPiece { length, to, then: None };
@@ -87,7 +100,7 @@ impl Network {
         let mut blocker = self.sight.blocker((p, nearest.to), self.reach, None);
         if blocker.is_none() {
             let FirstPiece { length, to: end, .. } = nearest;
-            return Some(ShortestWay { length, bends: Vec::new(), end, is_straight: true });
+            return Some(ShortestWay { length, bends: Vec::new(), end, over: None, is_straight: true });
         }
         let (free, aside) = self.free(p);
         // Of all ways whose first piece is clear, the shortest; of equally long ones, the straight one or that around the first circle.
@@ -132,7 +145,8 @@ impl Network {
         }
         field.remember(cell, around);
         let FirstPiece { length, to, then } = best?;
-        let straight = || Some(ShortestWay { length, bends: Vec::new(), end: to, is_straight: false });
+        let straight =
+            || Some(ShortestWay { length, bends: Vec::new(), end: to, over: None, is_straight: false });
         then.map_or_else(straight, |place| self.follow(field, length, place))
     }
 
@@ -175,7 +189,13 @@ impl Network {
                 Onward::Goal(k) => {
                     let departure = &field.departures[k as usize];
                     bends.push(bend(departure.at));
-                    return Some(ShortestWay { length, bends, end: departure.end, is_straight: false });
+                    return Some(ShortestWay {
+                        length,
+                        bends,
+                        end: departure.end,
+                        over: None,
+                        is_straight: false,
+                    });
                 }
                 Onward::Station(k) => {
                     let station = self.stations[k as usize];

@@ -94,7 +94,8 @@ impl Ways {
 /// The agents that find their way.
 fn finders(scenario: &Scenario) -> Vec<AgentId> {
     let chooses = scenario.routes().flat_map(Route::goals).any(|goal| scenario.scene.chooses(goal));
-    if !chooses && (scenario.scene.barriers.is_empty() || is_open(scenario)) {
+    let is_flat = scenario.scene.storeys.are_none();
+    if !chooses && is_flat && (scenario.scene.barriers.is_empty() || is_open(scenario)) {
         return Vec::new();
     }
     let finds = |id: &AgentId| scenario.agents[id.0 as usize].body.finds_ways;
@@ -138,11 +139,11 @@ impl Driver for Wayfinder {
 
 /// The shortest way to a goal, or one that keeps off corners and is hardly longer.
 fn way(atlas: &Atlas, situation: &Situation<'_>, goal: &Goal) -> Option<ShortestWay> {
-    let radius = class(situation);
-    let way = atlas.way(situation.position, goal, radius);
+    let (radius, climbs) = class(situation);
+    let way = atlas.way_of((radius, climbs), situation.position, goal);
     let aside = situation.parameter(Parameter::Aside);
     let wide = way.as_ref().filter(|way| aside > 0.0 && !way.is_straight).and_then(|way| {
-        let wide = atlas.way(situation.position, goal, Atlas::class(radius + aside, true));
+        let wide = atlas.way_of((Atlas::class(radius + aside, true), climbs), situation.position, goal);
         wide.filter(|wide| wide.length <= way.length * (1.0 + MORE) + aside)
     });
     wide.or(way)
@@ -159,7 +160,7 @@ fn quickest(atlas: &Atlas, situation: &Situation<'_>, exits: &[RegionId], memory
     let mut best: Option<(f64, RegionId)> = None;
     for exit in exits {
         let shape = &situation.scenario.scene.regions[exit.0 as usize].shape;
-        let way = atlas.way(situation.position, &Goal::Region(*exit), class(situation));
+        let way = atlas.way_of(class(situation), situation.position, &Goal::Region(*exit));
         let Some(way) = way else { continue };
         let is_ahead = |(at, end): &&(Vec2, Vec2)| shape.contains(*end) && (at - end).norm() < way.length;
         let waiting = others.iter().filter(is_ahead).count() as f64;
@@ -177,10 +178,10 @@ fn quickest(atlas: &Atlas, situation: &Situation<'_>, exits: &[RegionId], memory
     way(atlas, situation, &Goal::Region(exit)).map_or(Plan::NoWay, |way| Plan::Way(way.points().into()))
 }
 
-/// The radius for which ways of a body are looked up, m.
-fn class(situation: &Situation<'_>) -> f64 {
+/// The radius for which ways of a body are looked up, m, and its share of the speeds on stairs.
+fn class(situation: &Situation<'_>) -> (f64, f64) {
     let agent = &situation.scenario.agents[situation.agent.0 as usize];
-    Atlas::class(situation.parameter(Parameter::Radius), is_drawn(agent))
+    (Atlas::class(situation.parameter(Parameter::Radius), is_drawn(agent)), agent.body.stairs)
 }
 
 /// The width of an exit where a way ends in it, m: the length of the nearest side, or the diameter.

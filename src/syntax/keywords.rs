@@ -65,7 +65,7 @@ const fn within(word: &'static str) -> Keyword {
 }
 
 /// The keywords; of those that begin the items of a part hints name them in this order.
-pub const KEYWORDS: [Keyword; 87] = [
+pub const KEYWORDS: [Keyword; 89] = [
     starting("scenario", &[Scenario], Declares::Nothing),
     starting("horizon", &[Scenario], Declares::Nothing),
     starting("step", &[Scenario], Declares::Nothing),
@@ -103,6 +103,8 @@ pub const KEYWORDS: [Keyword; 87] = [
     starting("point", &[Scene], Declares::Thing),
     starting("line", &[Scene], Declares::Thing),
     starting("door", &[Scene], Declares::Thing),
+    starting("level", &[Scene], Declares::Thing),
+    starting("stairs", &[Scene], Declares::Thing),
     starting("import", &[Scene], Declares::Nothing),
     starting("periodic", &[Scene], Declares::Nothing),
     starting("after", &[State], Declares::Nothing),

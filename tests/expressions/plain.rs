@@ -81,6 +81,8 @@ impl Plain<'_> {
                 steps * 0.02
             }
             Field::Mode(_) => -1.0,
+            Field::Storey if s.whereabouts.island.is_empty() => 0.0,
+            Field::Storey => self.of(&s.whereabouts.island, agent),
             Field::Column(column) => s.columns.get(column as usize).map_or(f64::NAN, |of| self.of(of, agent)),
         }
     }

@@ -21,6 +21,9 @@ pub(super) fn table(scenario: &Scenario, seed: u64, every: u64) -> Table {
         columns.extend(numbers.map(|(name, unit)| Column::new(name, Kind::Number(unit))));
         columns.push(Column::new("present", Kind::Truth));
         columns.push(Column::new("radius", Kind::Number("m")));
+        if !scenario.scene.storeys.are_none() {
+            columns.push(Column::new("level", Kind::Word));
+        }
     }
     columns.extend(scenario.processes.variables.iter().map(|variable| {
         let kind = match variable.domain {
@@ -179,12 +182,16 @@ impl<'p> Rows<'p> {
             None => scenario.agents[agent].name.as_str().into(),
         }));
         if let Some(slot) = slot {
-            let (at, velocity) = (state.position(slot), state.velocity(slot));
+            let (place, velocity) = (state.position(slot), state.velocity(slot));
+            let (level, at) = scenario.scene.storeys.local(place).unzip();
+            let at = at.unwrap_or(place);
             row.extend([at.x, at.y, velocity.x, velocity.y, velocity.norm()].map(Value::Number));
             row.extend([Value::Truth(true), Value::Number(slot.of(&state.bodies[Parameter::Radius]))]);
+            row.extend(level.map(|level| Value::Word(level.name.as_str().into())));
         } else {
             row.extend([const { Value::Missing }; 5]);
             row.extend([Value::Truth(false), Value::Missing]);
+            row.extend(scenario.scene.storeys.islands.first().map(|_| Value::Missing));
         }
         row.extend(self.variables());
         row.extend(modes(self.program, state, slot));

@@ -53,6 +53,8 @@ pub(crate) struct Kind {
     pub(crate) search: SearchRule,
     /// How long they stand before they set out.
     pub(crate) premovement: Option<Law>,
+    /// Their speed on stairs, as a share of that of the table of the stairs.
+    pub(crate) stairs: f64,
     /// A law for each parameter.
     pub(crate) laws: [Option<Law>; Parameter::COUNT],
 }
@@ -66,6 +68,7 @@ impl Default for Kind {
             gait: GaitRule::default(),
             search: SearchRule::default(),
             premovement: None,
+            stairs: 1.0,
             laws: [const { None }; Parameter::COUNT],
         }
     }

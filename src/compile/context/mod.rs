@@ -7,6 +7,7 @@ pub(crate) mod entry;
 pub(crate) mod extent;
 pub(crate) mod interned;
 pub(crate) mod kind;
+pub(crate) mod levels;
 pub(crate) mod lowered;
 pub(crate) mod moments;
 pub(crate) mod names;
@@ -33,6 +34,7 @@ use crate::compile::context::{
     conducts::Conducts,
     extent::Extent,
     kind::Kind,
+    levels::Levels,
     names::Names,
     number::Number,
     observed::{Margins, Observed},
@@ -71,6 +73,8 @@ pub(crate) struct Context<'a> {
     pub(crate) scene: Scene,
     /// The floor plans that have a name.
     pub(crate) plans: Vec<FloorPlan>,
+    /// The levels of the scene.
+    pub(crate) levels: Levels,
     /// Processes so far.
     pub(crate) processes: Vec<Declared<'a>>,
     /// Behaviours, and who has them.
@@ -109,6 +113,7 @@ impl<'a> Context<'a> {
             kinds: BTreeMap::new(),
             scene: Scene::default(),
             plans: Vec::new(),
+            levels: Levels::default(),
             processes: Vec::new(),
             conducts: Conducts::default(),
             roster: Roster::default(),

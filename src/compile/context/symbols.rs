@@ -44,6 +44,10 @@ pub(crate) enum Meaning<'a> {
     Point(&'a Expr),
     /// A floor plan.
     Plan(usize),
+    /// A level.
+    Level(usize),
+    /// A flight of stairs, by its region.
+    Stairs(RegionId),
     /// A kind.
     Kind(&'a KindDecl),
     /// A recording.
@@ -71,7 +75,7 @@ impl Meaning<'_> {
     /// Whether two meanings go where the same things go: then it matters little which of the two a name has.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let group = |meaning: &Self| match meaning {
-            Self::Region(..) => Some(0),
+            Self::Region(..) | Self::Stairs(_) => Some(0),
             Self::Barrier(_) => Some(1),
             Self::Kind(_) => Some(2),
             Self::Tracks(_) => Some(3),
@@ -110,6 +114,8 @@ impl Meaning<'_> {
             Self::Line(_) => "a line",
             Self::Point(_) => "a point",
             Self::Plan(_) => "a floor plan",
+            Self::Level(_) => "a level",
+            Self::Stairs(_) => "a flight of stairs",
             Self::Kind(_) => "a kind",
             Self::Tracks(_) => "a recording",
             Self::Process(_) => "a process",

@@ -1,5 +1,6 @@
 //! Expressions after names, units and types are settled.
 
+use crate::base::geometry::Vec2;
 use crate::compile::context::{number::Number, parts::Part};
 use crate::compile::dimension::{Dimension, describe};
 use crate::logic::{NodeId, TermId};
@@ -63,6 +64,11 @@ pub(crate) enum Typed {
 }
 
 impl Typed {
+    /// A place, m.
+    pub(crate) fn point(p: Vec2) -> Self {
+        Self::Point(Number::rounded(p.x, Dimension::LENGTH), Number::rounded(p.y, Dimension::LENGTH))
+    }
+
     /// A truth value of a state.
     pub(crate) const fn truth(truth: Bool) -> Self {
         Self::Truth(truth, None)

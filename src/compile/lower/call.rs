@@ -13,6 +13,7 @@ use crate::compile::lower::{
     builtin::{CHOICES, DISTRIBUTIONS},
     counted_arguments, function, legs, margins, modes, name, process_names, select, shapes, traffic,
 };
+use crate::compile::scene::storeys;
 use crate::logic::Term;
 use crate::model::function::{Signature, Special};
 use crate::model::{BuiltIn, Num};
@@ -57,11 +58,13 @@ pub(crate) fn lower_call(
     if matches!(found, Some((_, Meaning::Doubtful))) {
         return context.lower_all(arguments, locals).and(Err(Reported));
     }
-    if let Some((scope, meaning)) = found
-        && let Meaning::Let(decl) = meaning
+    if let Some((scope, Meaning::Let(decl))) = found
         && !decl.arguments.is_empty()
     {
         return lower_let(context, (scope, decl), expr.span, arguments, locals);
+    }
+    if let Some((_, Meaning::Level(level))) = found {
+        return storeys::point_on(context, level, expr.span, arguments, locals);
     }
     if let Some(built_in) = BuiltIn::find(&function.name) {
         return call_built_in(context, built_in, (expr, function), arguments, locals);

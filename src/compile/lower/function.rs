@@ -1,5 +1,6 @@
 //! Built-in functions of values that are lowered.
 
+use crate::base::geometry::Vec2;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported, number::Number, symbols::unknown, typed::Typed,
 };
@@ -68,6 +69,9 @@ pub(crate) fn of_one(
             return Ok(Typed::Num(Num::Of(field, context.as_agent(typed, span)?), built_in.gives()));
         }
         (Signature::Set(collective), typed) => {
+            if collective == Collective::Spread {
+                of_one_level(context, span)?;
+            }
             return Ok(Typed::Num(Num::OfSet(collective, context.as_set(typed, span)?), built_in.gives()));
         }
         (Signature::Special(special), typed) => (special, typed),
@@ -77,7 +81,10 @@ pub(crate) fn of_one(
     Ok(match special {
         (Special::Done, typed) => legs::done(context.as_agent(typed, span)?),
         (Special::Present, typed) => Typed::truth(Bool::Present(context.as_agent(typed, span)?)),
-        (Special::Position, Typed::Agents { set, particle: false }) => centroid(set),
+        (Special::Position, Typed::Agents { set, particle: false }) => {
+            of_one_level(context, span)?;
+            centroid(set)
+        }
         (Special::Position, typed) => {
             let (x, y, dimension) = context.as_vector(typed, span)?;
             Typed::Vector(x, y, dimension)
@@ -106,7 +113,10 @@ pub(crate) fn of_one(
             weight::count_copy(context, Weight::of_num(&y), span)?;
             Typed::Num(norm(x, y), dimension)
         }
-        (Special::Centroid, typed) => centroid(context.as_set(typed, span)?),
+        (Special::Centroid, typed) => {
+            of_one_level(context, span)?;
+            centroid(context.as_set(typed, span)?)
+        }
         (Special::Members, typed) => Typed::Agents { set: context.as_set(typed, span)?, particle: false },
         (Special::Count, typed) => {
             let set = context.as_set(typed, span)?;
@@ -222,6 +232,14 @@ pub(crate) fn distance(
         && ax.dimension == Dimension::LENGTH
         && bx.dimension == Dimension::LENGTH
     {
+        let places = [(ax, ay), (bx, by)].map(|(x, y)| Vec2::new(x.value, y.value));
+        let storeys = &context.scene.storeys;
+        if storeys.part(places[0], places[1]) {
+            let [a, b] = places.map(|p| storeys.place(p));
+            return context
+                .report(error!(E0412, span, "{a} and {b} lie on two levels, and have no distance";
+                hint: "compare places of one level"));
+        }
         let (dx, dy) = (ax.value - bx.value, ay.value - by.value);
         let length = (dx * dx + dy * dy).sqrt();
         return computed(context, length, Dimension::LENGTH, "distance", span);
@@ -249,6 +267,15 @@ pub(crate) fn contact(context: &mut Context<'_>, agents: Vec<(Typed, Span)>) -> 
 fn mean_velocity(set: &Set) -> (Num, Num) {
     let along = |axis| Num::OfSet(Collective::MeanVelocity(axis), set.clone());
     (along(Axis::X), along(Axis::Y))
+}
+
+/// People on several levels have no middle.
+fn of_one_level(context: &mut Context<'_>, span: Span) -> Lowered<()> {
+    if context.scene.storeys.are_none() {
+        return Ok(());
+    }
+    context.report(error!(E0412, span, "people on several levels have no middle";
+        hint: "count them by region: `count(a in people: a in first.hall)`"))
 }
 
 fn centroid(set: Set) -> Typed {

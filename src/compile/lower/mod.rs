@@ -33,6 +33,7 @@ pub(crate) mod times;
 pub(crate) mod traffic;
 pub(crate) mod weight;
 
+use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
@@ -42,6 +43,7 @@ use crate::compile::context::{
     typed::Typed,
 };
 use crate::compile::dimension::{self, Dimension};
+use crate::compile::scene::storeys;
 use crate::logic::Window;
 use crate::syntax::ast::BinaryOp;
 use crate::syntax::ast::Bound;
@@ -115,6 +117,9 @@ impl Context<'_> {
     }
 
     fn lower_kind(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {
+        if let Some(name) = storeys::member(self, expr, locals) {
+            return name::lower_name(self, &name, expr.span, locals);
+        }
         match &expr.kind {
             ExprKind::Quantity(quantity) => {
                 let unit = match &quantity.unit {
@@ -144,6 +149,12 @@ impl Context<'_> {
                     return name::lower_member(self, base, field, locals);
                 }
                 if let Typed::Point(x, y) = typed {
+                    let own = storeys::own_coordinates(&self.scene.storeys, Vec2::new(x.value, y.value));
+                    let away = Vec2::new(x.value, y.value) - own;
+                    if away != Vec2::zeros() {
+                        let own = if field.name == "x" { own.x } else { own.y };
+                        return Ok(Typed::Number(Number::rounded(own, Dimension::LENGTH)));
+                    }
                     return Ok(Typed::Number(if field.name == "x" { x } else { y }));
                 }
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;
@@ -306,6 +317,11 @@ impl Context<'_> {
                 arithmetic::combined(self, (expr.span, op), (left, sides.0), (right, sides.1), locals)
             }
             BinaryOp::In => {
+                if let Some(level) = storeys::level_of(self, right, locals) {
+                    let typed = self.lower(left, locals)?;
+                    let who = self.as_agent(typed, left.span)?;
+                    return Ok(Typed::truth(storeys::is_on(who, level)));
+                }
                 margins::note_margin(self, Dimension::LENGTH, left.span.to(right.span));
                 let sides = (self.lower(left, locals), self.lower(right, locals));
                 logic::membership(self, (sides.0?, left.span), (sides.1?, right.span))

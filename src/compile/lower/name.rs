@@ -50,6 +50,8 @@ pub(crate) fn lower_name(
     if let Some(inside) = lower_inside_behaviour(context, name, span, locals) {
         return inside;
     }
+    let full = context.on_level(name);
+    let name = full.as_deref().unwrap_or(name);
     let Some((scope, meaning)) = context.look_up(name, locals.scope) else {
         return match name {
             "time" if context.time.clock.is_jumps() => {
@@ -123,9 +125,15 @@ pub(crate) fn lower_name(
                 found => this.mismatch(formula.span, "a condition", &found),
             })
         }
-        Meaning::Region(id, _) => Ok(Typed::Region(id)),
+        Meaning::Level(_) => context.report(error!(E0206, span, "expected a value, but `{name}` is a level";
+            hint: "name something on it, `{name}.exit`, or a place: `{name} (3, 4)`")),
+        Meaning::Region(id, _) | Meaning::Stairs(id) => Ok(Typed::Region(id)),
         Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
         Meaning::Line(id) => Ok(Typed::Line(id)),
+        Meaning::Point(_) if !context.scene.storeys.are_none() => {
+            let point = context.scene.points.iter().find(|(known, _)| known == name);
+            point.map(|(_, point)| Typed::point(*point)).ok_or(Reported)
+        }
         Meaning::Point(at) => context.constant(scope, name, span, |this| this.lower(at, &Locals::of(scope))),
         Meaning::Process(process) => {
             let is_array = context.processes.get(process as usize).is_some_and(Declared::is_array);

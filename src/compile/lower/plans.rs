@@ -6,6 +6,7 @@ use crate::compile::context::{
     symbols::{Meaning, unknown},
     typed::Typed,
 };
+use crate::compile::scene::storeys;
 use crate::model::{Line, LineId, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::codes::Code;
@@ -13,8 +14,14 @@ use crate::syntax::source::Span;
 
 /// The floor plan that an expression names.
 pub(crate) fn named(context: &Context<'_>, base: &Expr, locals: &Locals) -> Option<usize> {
-    let ExprKind::Name(name) = &base.kind else { return None };
-    match context.look_up(name, locals.scope) {
+    let on_level = storeys::member(context, base, locals);
+    let name = match (&base.kind, &on_level) {
+        (_, Some(full)) => full,
+        (ExprKind::Name(name), None) => name,
+        _ => return None,
+    };
+    let full = context.on_level(name);
+    match context.look_up(full.as_ref().unwrap_or(name), locals.scope) {
         Some((_, Meaning::Plan(plan))) if locals.names.iter().all(|(bound, _)| bound != name) => Some(plan),
         _ => None,
     }

@@ -146,7 +146,9 @@ pub(crate) fn in_reach(context: &mut Context<'_>, span: Span, p: Vec2) -> Lowere
 }
 
 fn named_shape(context: &mut Context<'_>, name: &Ident) -> Lowered<Shape> {
-    match context.look_up(&name.name, 0) {
+    let full = context.on_level(&name.name);
+    match context.look_up(full.as_ref().unwrap_or(&name.name), 0) {
+        Some((_, Meaning::Stairs(id))) => region_shape(context, id, name.span),
         Some((_, Meaning::Region(id, shape))) => {
             context.names.uses.insert(name.span, Meant::Written(shape.span()));
             region_shape(context, id, name.span)

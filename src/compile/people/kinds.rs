@@ -6,6 +6,7 @@ use crate::compile::context::{
     kind::{FIELDS, Kind, Planning},
     symbols::{Meaning, unknown},
 };
+use crate::compile::dimension::Dimension;
 use crate::compile::lower::choices;
 use crate::compile::lower::laws;
 use crate::compile::people::{planners, refused, stepping};
@@ -25,6 +26,8 @@ const WAYS: [&str; 2] = ["shortest", "straight"];
 
 /// The field of the time that somebody stands before they set out.
 const PREMOVEMENT: &str = "premovement";
+/// The field of the speed on stairs.
+const STAIRS: &str = "stairs";
 
 /// The fields of a kind that are no parameters, but for its `premovement`.
 fn fields_of(kind: model::Kind) -> &'static [&'static str] {
@@ -142,7 +145,7 @@ pub(crate) fn own_kind(context: &mut Context<'_>, decl: &KindDecl) -> Lowered<Ki
             continue;
         }
         let known = Parameter::of_kind(base).map(Parameter::name).chain(fields_of(base).iter().copied());
-        let known = known.chain([PREMOVEMENT]);
+        let known = known.chain([PREMOVEMENT, STAIRS]);
         let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
         context.note(error);
         // The words of a field that other kinds have are no names.
@@ -194,6 +197,14 @@ pub(crate) fn parameters<'f>(
             }
             continue;
         }
+        if field.name.name == STAIRS {
+            let share = on_stairs(context, &field.value, locals);
+            context.given_up |= share.is_err();
+            if let (Some(kind), Ok(share)) = (&mut kind, share) {
+                kind.stairs = share;
+            }
+            continue;
+        }
         let known = match &kind {
             Some(kind) => kind.parameter(&field.name.name),
             None => Parameter::named(&field.name.name),
@@ -214,6 +225,19 @@ pub(crate) fn parameters<'f>(
     rest
 }
 
+/// The share of the speed that the table of stairs has.
+fn on_stairs(context: &mut Context<'_>, value: &Value, locals: &Locals) -> Lowered<f64> {
+    let Value::Plain(expr) = value else {
+        return context.report(error!(E0305, value.span(), "expected a number"));
+    };
+    let share = context.number_of(expr, Dimension::NONE, locals)?.value;
+    if share > 0.0 && share.is_finite() {
+        return Ok(share);
+    }
+    let said = "the share of the speed on stairs must be positive";
+    context.report(error!(E0305, expr.span, "{said}"; hint: "write for example `stairs = 0.8`"))
+}
+
 /// The body of a kind: every parameter must be known now.
 pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowered<Body> {
     if matches!(kind.base, model::Kind::Planned | model::Kind::Stepped) {
@@ -223,6 +247,11 @@ pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowe
             "walkers that plan or step",
             "use a kind that starts from `sfm` or `cfs`",
         )?;
+        if !context.scene.storeys.are_none() {
+            let said = "walkers that plan or step cannot be in a scene with levels";
+            return context.report(error!(E0412, name.span, "{said}";
+                hint: "use a kind that starts from `sfm` or `cfs`"));
+        }
     }
     let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());
     // A preferred speed follows from the largest one.
@@ -249,6 +278,7 @@ pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowe
     let is_planned = kind.base == model::Kind::Planned;
     body.finds_ways = !kind.straight && matches!(kind.base, model::Kind::Sfm | model::Kind::Cfs);
     body.premovement.clone_from(&kind.premovement);
+    body.stairs = kind.stairs;
     body.stepper = (kind.base == model::Kind::Stepped).then(|| {
         let sets_speed = kind.laws[Parameter::Speed as usize].is_some();
         Arc::new(Stepper { gait: kind.gait.clone(), search: kind.search, sets_speed })

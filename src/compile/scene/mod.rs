@@ -3,10 +3,11 @@
 pub(crate) mod doors;
 pub(crate) mod imports;
 pub(crate) mod periodic;
+pub(crate) mod storeys;
 
 use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::compile::context::{
-    Context, Locals, Lowered, Reported, entry, plans::FloorPlan, symbols::Meaning,
+    Context, Locals, Lowered, Reported, entry, levels::Level, plans::FloorPlan, symbols::Meaning,
 };
 use crate::compile::files::Files;
 use crate::compile::lower::{builtin::DISTRIBUTIONS, shapes};
@@ -14,7 +15,7 @@ use crate::compile::nearest::nearest;
 use crate::compile::scene::imports::{fields::Import, walls};
 use crate::data::geometry::{self, plan::TOUCHING};
 use crate::model::{Barrier, BarrierId, BuiltIn, Line, LineId, Obstacle, Region, RegionId};
-use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem};
+use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr};
 use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 
@@ -63,12 +64,59 @@ pub(crate) fn declare_scene<'a>(context: &mut Context<'a>, items: &'a [SceneItem
                 context.plans.push(FloorPlan { name: name.name.clone(), parts: None });
                 entry::enter(context, name, Meaning::Plan(context.plans.len() - 1));
             }
+            SceneItem::Level { name, items, .. } => {
+                let [barriers, lines] = [context.scene.barriers.len(), context.scene.lines.len()];
+                entry::enter(context, name, Meaning::Level(context.levels.all.len()));
+                let level = Level { name: name.name.clone(), barriers: 0..0, lines: 0..0 };
+                let number = context.levels.all.len();
+                context.levels.all.push(level);
+                declare_scene(context, items);
+                let level = &mut context.levels.all[number];
+                level.barriers = barriers..context.scene.barriers.len();
+                level.lines = lines..context.scene.lines.len();
+            }
+            SceneItem::Stairs { name, .. } => {
+                context.shapes.push(None);
+                let id = RegionId(context.shapes.len() as u32 - 1);
+                let nothing = Shape::rectangle(Vec2::zeros(), Vec2::zeros());
+                context.scene.regions.push(Region::new(&name.name, nothing));
+                entry::enter(context, name, Meaning::Stairs(id));
+            }
             SceneItem::Import { called: None, .. } | SceneItem::Periodic { .. } => {}
         }
     }
 }
 
-/// Settles the shapes of a scene; `next` and `line` are the numbers of its first barrier and its first line. The doors are set
+/// Settles the shapes of all scenes. The doors are set when all walls are known.
+pub(crate) fn settle<'a>(
+    context: &mut Context<'a>,
+    scenes: &[&'a [SceneItem]],
+    files: &Files,
+) -> Vec<doors::Door> {
+    if !context.levels.all.is_empty() {
+        return storeys::settle(context, scenes, files);
+    }
+    let (mut barrier, mut line) = (0, 0);
+    let mut doors = Vec::new();
+    for items in scenes {
+        doors.extend(settle_scene(context, items, files, (&mut barrier, &mut line)));
+    }
+    doors
+}
+
+fn settle_region(context: &mut Context<'_>, name: &Ident, shape: &ShapeExpr) {
+    let entry = context.names.scopes[0].get(&name.name).filter(|entry| entry.span == name.span);
+    if let Some(Meaning::Region(id, _)) = entry.map(|entry| entry.meaning.clone()) {
+        if let Ok(shape) = shapes::region_shape(context, id, name.span) {
+            context.scene.regions[id.0 as usize].shape = shape;
+        }
+    } else {
+        // The name is taken; what is wrong with the shape is said beside that.
+        let _ = shapes::lower_shape(context, shape, &Locals::default());
+    }
+}
+
+/// Settles the shapes of a scene or level; `next` and `line` are the numbers of its first barrier and its first line. The doors are set
 /// when all walls are known.
 pub(crate) fn settle_scene<'a>(
     context: &mut Context<'a>,
@@ -83,17 +131,7 @@ pub(crate) fn settle_scene<'a>(
     let mut doors = Vec::new();
     for item in items {
         match item {
-            SceneItem::Region { name, shape } => {
-                let entry = context.names.scopes[0].get(&name.name).filter(|entry| entry.span == name.span);
-                if let Some(Meaning::Region(id, _)) = entry.map(|entry| entry.meaning.clone()) {
-                    if let Ok(shape) = shapes::region_shape(context, id, name.span) {
-                        context.scene.regions[id.0 as usize].shape = shape;
-                    }
-                } else {
-                    // The name is taken; what is wrong with the shape is said beside that.
-                    let _ = shapes::lower_shape(context, shape, &Locals::default());
-                }
-            }
+            SceneItem::Region { name, shape } => settle_region(context, name, shape),
             SceneItem::Wall { points, span, .. } => {
                 if let Ok(segments) = wall(context, points, *span) {
                     context.scene.barriers[*next].obstacle = Obstacle::Wall(segments);
@@ -131,7 +169,10 @@ pub(crate) fn settle_scene<'a>(
                 }
                 *line += 1;
             }
-            SceneItem::Import { .. } | SceneItem::Periodic { .. } => {}
+            SceneItem::Import { .. }
+            | SceneItem::Periodic { .. }
+            | SceneItem::Level { .. }
+            | SceneItem::Stairs { .. } => {}
         }
     }
     let walls =

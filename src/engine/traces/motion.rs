@@ -172,7 +172,10 @@ impl Motion {
         };
         let periods = scenario.scene.periods;
         let Some([old_x, old_y]) = self.tracks[track].points.last() else { return false };
-        jumps(periods.x, x - old_x) || jumps(periods.y, y - old_y)
+        let at = |x: &i32, y: &i32| Vec2::new(f64::from(*x), f64::from(*y)) / 1000.0;
+        jumps(periods.x, x - old_x)
+            || jumps(periods.y, y - old_y)
+            || scenario.scene.storeys.part(at(old_x, old_y), at(&x, &y))
     }
 
     fn see_plan(&mut self, state: &State, (agent, slot): (usize, Slot), place: Millimetres) {

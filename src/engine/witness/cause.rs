@@ -155,11 +155,10 @@ pub(in crate::engine) fn stranded(program: &Program, key: TrialKey, trials: u64)
     let Some(agent) = who else { return in_trials };
     let at = state.position(state.slot(agent, 0));
     format!(
-        "{in_trials}; in trial {}, `{}` at ({}, {}) m at {}",
+        "{in_trials}; in trial {}, `{}` at {} at {}",
         key.index,
         scenario.agents[agent].name,
-        words::number((at.x * 100.0).round() / 100.0),
-        words::number((at.y * 100.0).round() / 100.0),
+        scenario.scene.storeys.place(at),
         words::moment(scenario.clock, Tick(state.ticks[0])),
     )
 }

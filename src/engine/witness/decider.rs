@@ -14,6 +14,8 @@ pub struct Decider {
     pub agent: String,
     /// Where it was, m.
     pub place: [f64; 2],
+    /// On which level or stairs, if there are levels.
+    pub level: Option<String>,
     /// The compared number, SI; none where several were, or none.
     pub value: Option<f64>,
     /// Its unit.
@@ -31,6 +33,7 @@ pub(super) fn decider(search: &Search<'_>) -> Option<Decider> {
     let (id, scenario) = (*search.found().first()?, search.scenario());
     let agent = search.name_of(id)?;
     let place = place_of(search, id)?;
+    let level = level_of(search, id);
     let sides = search.compared();
     // A comparison with the present time says no more than when it was made: `done(a)`.
     let compared = sides.filter(|(_, b)| !matches!(b, Num::Time)).and_then(|(a, b)| {
@@ -47,7 +50,7 @@ pub(super) fn decider(search: &Search<'_>) -> Option<Decider> {
     let is_between = is_gap && search.is_member();
     let (value, unit, against) = compared.map_or_else(Default::default, |(v, unit, a)| (Some(v), unit, a));
     let other = other.filter(|_| value.is_some()).and_then(|id| search.name_of(id));
-    Some(Decider { agent, place, value, unit, against, other, is_between })
+    Some(Decider { agent, place, level, value, unit, against, other, is_between })
 }
 
 /// A decider before the names of the agents: `: 0.21 m to westbound[6] at (9.2, 1.4) m`, and further agents.
@@ -61,7 +64,8 @@ pub(super) fn written(decider: &Decider, others: &[String]) -> String {
         said.push_str(if decider.is_between { " to " } else { " of " });
     }
     let [x, y] = decider.place.map(|part| words::number((part * 100.0).round() / 100.0));
-    said = format!("{said}{} at ({x}, {y}) m", decider.agent);
+    let level = decider.level.as_ref().map_or(String::new(), |level| format!("{level} "));
+    said = format!("{said}{} at {level}({x}, {y}) m", decider.agent);
     if let Some(other) = &decider.other {
         said = format!("{said} to {other}");
     }
@@ -77,6 +81,14 @@ fn place_of(search: &Search<'_>, id: AgentId) -> Option<[f64; 2]> {
     let at = |axis| Num::Coordinate(axis, Place::Agent(Who::Agent(id)));
     let place: [f64; 2] = search.values(&[at(Axis::X), at(Axis::Y)]).try_into().ok()?;
     place.iter().all(|part| part.is_finite()).then_some(place)
+}
+
+/// The level or stairs on which an agent is.
+fn level_of(search: &Search<'_>, id: AgentId) -> Option<String> {
+    let islands = &search.scenario().scene.storeys.islands;
+    let number = if islands.is_empty() { None } else { Some(Num::Of(Field::Storey, Who::Agent(id))) };
+    let island = *search.values(std::slice::from_ref(&number?)).first()?;
+    islands.get(island as usize).map(|island| island.name.clone())
 }
 
 /// The agent that gives another one its clearance; none where that is a wall.

@@ -375,6 +375,7 @@ impl Behaviours {
             }
         }
         let ranges = state.bodies.put(slot, &values, Parameter::changeable());
+        state.whereabouts.slow(&mut state.bodies, slot);
         state.prepare(slot, drive.dt);
         let (present, home) = state.behaviours.detours[slot.block][slot.lane];
         if route == present {

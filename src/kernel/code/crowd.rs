@@ -6,7 +6,7 @@ use super::node::{Measure, Reading};
 use super::proximity::MARGIN;
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math;
-use crate::model::{Comparison, Field, Pair, Parameter, Period, Periods};
+use crate::model::{Axis, Comparison, Field, Pair, Parameter, Period, Periods};
 use fearless_simd::{Simd, prelude::*};
 
 /// The members of a crowd, less perhaps one.
@@ -211,6 +211,9 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
     match reading {
         Reading::X => view.read(&state.motion.x, body),
         Reading::Y => view.read(&state.motion.y, body),
+        Reading::Field(Field::Storey) => storey(view, &state.whereabouts.island, body),
+        Reading::Origin(Axis::X) => storey(view, &state.whereabouts.origin_x, body),
+        Reading::Origin(Axis::Y) => storey(view, &state.whereabouts.origin_y, body),
         Reading::Field(Field::VelocityX) => view.read(&state.motion.vx, body),
         Reading::Field(Field::VelocityY) => view.read(&state.motion.vy, body),
         Reading::Field(Field::Speed) => {
@@ -254,6 +257,13 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
             None => view.splat(f64::NAN),
         },
     }
+}
+
+/// A number of the level or stairs of somebody; 0 before anybody was there.
+#[cold]
+#[inline(never)]
+fn storey<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, field: &[Lanes], body: Body) -> Vector<S> {
+    if field.is_empty() { view.splat(0.0) } else { view.read(field, body) }
 }
 
 /// Mean of a value over the members; NaN over nobody.

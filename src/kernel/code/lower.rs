@@ -6,6 +6,7 @@
 
 mod closed;
 mod functions;
+mod storeys;
 
 use super::lists::Lists;
 use super::node::{Crowd, Graph, Id, Join, Measure, Node, Reading};
@@ -124,6 +125,7 @@ impl<'a> Lowering<'a> {
         } else {
             self.graph.enter(Node::Distance(one, other))
         };
+        let distance = self.if_together(a, b, distance);
         let distance = self.if_entered(a, distance);
         self.if_entered(b, distance)
     }
@@ -155,10 +157,11 @@ impl<'a> Lowering<'a> {
             Num::Of(field, who) => resolved(self.of(Reading::Field(*field), *who)),
             Num::Coordinate(axis, place) => {
                 let (x, y) = self.point(place);
-                match axis {
+                let value = match axis {
                     Axis::X => x,
                     Axis::Y => y,
-                }
+                };
+                self.on_storey(*axis, place, value)
             }
             Num::Distance(a, b) => self.between(a, b),
             Num::Depth(place, region) => {
@@ -166,7 +169,10 @@ impl<'a> Lowering<'a> {
                 let id = self.over_images((x.id, y.id), Arithmetic::Max, |x, y| Node::Depth(x, y, region.0));
                 Value { id, open: self.either([x.open, y.open]) }
             }
-            Num::OfTwo(pair, a, b) => resolved(self.graph.enter(Node::OfTwo(*pair, *a, *b))),
+            Num::OfTwo(pair, a, b) => {
+                let value = self.graph.enter(Node::OfTwo(*pair, *a, *b));
+                resolved(self.if_together(*a, *b, value))
+            }
             Num::Crossings(line, window) => self.crossings(*line, *window),
             Num::Voronoi(region) => resolved(self.graph.enter(Node::Voronoi(region.0))),
             Num::OfSet(collective, set) => self.of_set(*collective, set),
@@ -238,7 +244,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn fold(&mut self, fold: Fold, set: &Set, body: &Num) -> Value {
-        if let (Fold::Min, Some((who, measure))) = (fold, self.measure(body)) {
+        if let (Fold::Min, Some((who, measure)), true) = (fold, self.measure(body), self.is_flat()) {
             let crowd = self.crowd(set);
             return resolved(self.graph.enter(Node::Nearest(who, crowd, measure)));
         }
@@ -308,17 +314,22 @@ impl<'a> Lowering<'a> {
             (thing @ (Place::Region(_) | Place::Barrier(_)), point)
             | (point, thing @ (Place::Region(_) | Place::Barrier(_))) => {
                 let (x, y) = self.point(point);
-                let id = self.over_images((x.id, y.id), Arithmetic::Min, |x, y| match thing {
+                let far = self.over_images((x.id, y.id), Arithmetic::Min, |x, y| match thing {
                     Place::Region(region) => Node::ToRegion(x, y, region.0),
                     Place::Barrier(barrier) => Node::ToBarrier(x, y, barrier.0),
                     // Not reached: `thing` is one of the two.
                     _ => Node::Constant(f64::NAN.to_bits()),
                 });
+                let id = self.if_on_island_of(point, thing, far);
                 Value { id, open: self.either([x.open, y.open]) }
             }
             (a, b) => {
                 let ((ax, ay), (bx, by)) = (self.point(a), self.point(b));
-                let id = self.apart([ax.id, ay.id, bx.id, by.id]);
+                let far = self.apart([ax.id, ay.id, bx.id, by.id]);
+                let id = match (a, b) {
+                    (Place::Agent(_), point) => self.if_on_island_of(a, point, far),
+                    (point, agent) => self.if_on_island_of(agent, point, far),
+                };
                 Value { id, open: self.either([ax.open, ay.open, bx.open, by.open]) }
             }
         }
@@ -430,7 +441,7 @@ impl<'a> Lowering<'a> {
             _ => return None,
         }
         let (crowd, var, bound) = self.enter_loop(set, |inside| inside.number(bound));
-        if bound.open.is_some() || self.graph.depends_on(bound.id, var) {
+        if bound.open.is_some() || self.graph.depends_on(bound.id, var) || !self.is_within_storey(bound.id) {
             return None;
         }
         let far = self.far(who, crowd, measure, (test, all), bound.id);

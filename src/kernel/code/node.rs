@@ -4,7 +4,7 @@
 //! entered once (hash-consing), so that atoms share what they have in common, and operands always come
 //! before their users.
 
-use crate::model::{Arithmetic, Comparison, Field, Fold, Function, Pair, Who};
+use crate::model::{Arithmetic, Axis, Comparison, Field, Fold, Function, Pair, Who};
 use std::collections::HashMap;
 
 /// Number of a node; later that of a register.
@@ -17,6 +17,8 @@ pub(super) enum Reading {
     X,
     /// Position, second coordinate.
     Y,
+    /// Where the origin of coordinates there lies in the plane.
+    Origin(Axis),
     /// A field.
     Field(Field),
 }

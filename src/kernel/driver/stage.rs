@@ -190,6 +190,11 @@ impl Drive {
         out
     }
 
+    /// Whether an agent has a driver.
+    pub(in crate::kernel) fn has_driver(&self, agent: usize) -> bool {
+        self.drivers.of(agent).is_some()
+    }
+
     /// First stage of a route that is a move of an agent.
     pub(super) fn named(&self, agent: usize, number: usize) -> Option<u32> {
         let mut own = self.named.iter().filter(|(whose, _)| whose.0 as usize == agent);
@@ -212,6 +217,9 @@ impl Drive {
 
     /// How near a barrier is to a line, m, as far as somebody may be off it in a look or two.
     pub(super) fn clearance(&self, closed: u32, line: &Segment, radius: f64) -> f64 {
+        if self.scenario.scene.storeys.part(line.a, line.b) {
+            return 0.0;
+        }
         self.sight(closed).clearance((line.a, line.b), 0.5 * radius + ASIDE)
     }
 
@@ -223,6 +231,10 @@ impl Drive {
         radius: f64,
         likely: Option<u32>,
     ) -> Option<u32> {
+        // What is on another level is out of sight, though no barrier is in between.
+        if self.scenario.scene.storeys.part(line.0, line.1) {
+            return Some(u32::MAX);
+        }
         self.sight(closed).blocker(line, 0.5 * radius, likely)
     }
 

@@ -296,40 +296,59 @@ impl Cohesion {
     /// Adds the attraction of a group.
     fn add(&self, periods: &Periods, state: &State, sums: &mut [Sum]) {
         for lane in state.occupied.iter() {
-            // On a closed plane of each the image that is nearest to the first.
-            let mut first = None;
-            let mut place = |member: u32| {
-                let slot = state.slot(member as usize, lane);
-                let here = state.present[slot.block].has(slot.lane);
-                here.then(|| {
-                    let (x, y) = (&state.motion.x[slot.block], &state.motion.y[slot.block]);
-                    let at = Vec2::new(x.0[slot.lane], y.0[slot.lane]);
-                    let first = *first.get_or_insert(at);
-                    (slot, if periods.are_none() { at } else { first + periods.way(at - first) })
-                })
-            };
-            let (mut n, mut sum) = (0.0, Vec2::zeros());
-            for (_, at) in self.members.iter().filter_map(|&member| place(member)) {
-                n += 1.0;
-                sum += at;
+            // On each level its own members.
+            let mut islands: Vec<f64> = Vec::new();
+            if !state.whereabouts.island.is_empty() {
+                let of = |member: &u32| state.slot(*member as usize, lane).of(&state.whereabouts.island);
+                islands.extend(self.members.iter().map(of));
+                islands.sort_by(f64::total_cmp);
+                islands.dedup();
             }
-            for (slot, at) in self.members.iter().filter_map(|&member| place(member)) {
-                let way = sum / n - at;
-                let distance = way.dot(&way).sqrt();
-                let abreast = state.bodies[Parameter::Abreast][slot.block].0[slot.lane];
-                let (unit, fade) = if abreast > 0.0 { (abreast, FADE) } else { (1.0, 0.0) };
-                let beyond = distance - 0.5 * (n - 1.0) * unit;
-                let mut pull = Vec2::zeros();
-                if distance > 0.0 && beyond > 0.0 {
-                    let share = if beyond < fade { beyond / fade } else { 1.0 };
-                    pull = way * (share * self.attraction / distance);
-                }
-                if abreast > 0.0 {
-                    pull += glance(state, slot, way);
-                }
-                sums[slot.block].x.0[slot.lane] += pull.x;
-                sums[slot.block].y.0[slot.lane] += pull.y;
+            if islands.len() < 2 {
+                self.pull(periods, state, lane, None, sums);
             }
+            for island in islands.iter().filter(|_| islands.len() > 1) {
+                self.pull(periods, state, lane, Some(*island), sums);
+            }
+        }
+    }
+
+    /// Adds the attraction of those members in the trial of a lane who are on an island, or of all.
+    fn pull(&self, periods: &Periods, state: &State, lane: usize, island: Option<f64>, sums: &mut [Sum]) {
+        // On a closed plane of each the image that is nearest to the first.
+        let mut first = None;
+        let mut place = |member: u32| {
+            let slot = state.slot(member as usize, lane);
+            let here = state.present[slot.block].has(slot.lane)
+                && island.is_none_or(|island| slot.of(&state.whereabouts.island) == island);
+            here.then(|| {
+                let (x, y) = (&state.motion.x[slot.block], &state.motion.y[slot.block]);
+                let at = Vec2::new(x.0[slot.lane], y.0[slot.lane]);
+                let first = *first.get_or_insert(at);
+                (slot, if periods.are_none() { at } else { first + periods.way(at - first) })
+            })
+        };
+        let (mut n, mut sum) = (0.0, Vec2::zeros());
+        for (_, at) in self.members.iter().filter_map(|&member| place(member)) {
+            n += 1.0;
+            sum += at;
+        }
+        for (slot, at) in self.members.iter().filter_map(|&member| place(member)) {
+            let way = sum / n - at;
+            let distance = way.dot(&way).sqrt();
+            let abreast = state.bodies[Parameter::Abreast][slot.block].0[slot.lane];
+            let (unit, fade) = if abreast > 0.0 { (abreast, FADE) } else { (1.0, 0.0) };
+            let beyond = distance - 0.5 * (n - 1.0) * unit;
+            let mut pull = Vec2::zeros();
+            if distance > 0.0 && beyond > 0.0 {
+                let share = if beyond < fade { beyond / fade } else { 1.0 };
+                pull = way * (share * self.attraction / distance);
+            }
+            if abreast > 0.0 {
+                pull += glance(state, slot, way);
+            }
+            sums[slot.block].x.0[slot.lane] += pull.x;
+            sums[slot.block].y.0[slot.lane] += pull.y;
         }
     }
 }

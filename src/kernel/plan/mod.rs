@@ -88,6 +88,8 @@ pub enum Occasion {
     Left,
     /// The plan ends within the next step; the new plan begins when it does.
     Ended,
+    /// The agent has come to another level, or to stairs.
+    Storey,
     /// Doors have opened or closed.
     Doors,
     /// Its way leads to one of several exits, and it looks whether another one is quicker now.

@@ -36,6 +36,9 @@ pub(super) fn enter(
     for field in [travelled, fx, fy, slowness] {
         put(field, 0.0);
     }
+    if !program.stairwells.is_empty() {
+        program.stairwells.begin(program, state, slot, at);
+    }
     state.driving.move_on(slot);
     state.present[slot.block] |= Mask::lane(slot.lane);
     state.passages.begin(slot);

@@ -13,6 +13,7 @@ mod passages;
 pub(super) mod plans;
 pub(super) mod progress;
 pub(super) mod route;
+mod whereabouts;
 
 use super::fault::Fault;
 pub use super::layout::{Layout, Slot};
@@ -32,6 +33,7 @@ pub use progress::Progress;
 use route::Halt;
 pub use route::{Routes, Way};
 use std::sync::Arc;
+pub use whereabouts::Whereabouts;
 
 /// The moving state of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +69,8 @@ pub struct State {
     pub progress: Progress,
     /// Which lines they have crossed, and how long they have been in which region.
     pub passages: Passages,
+    /// On which level or stairs they are.
+    pub whereabouts: Whereabouts,
     /// Columns of the recording that is shown; NaN in who has no number.
     pub columns: Vec<Vec<Lanes>>,
     /// States of their behaviours.
@@ -108,6 +112,7 @@ impl State {
             plans: Plans::default(),
             progress: Progress::new(blocks),
             passages: Passages::default(),
+            whereabouts: Whereabouts::default(),
             columns: Vec::new(),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),

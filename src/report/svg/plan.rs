@@ -48,10 +48,15 @@ fn way(atlas: &Atlas, agent: &Agent, route: &Route) -> Option<(Vec<Vec2>, f64)> 
         let Leg::To(goal) = leg else { continue };
         let from = *points.last()?;
         if agent.body.finds_ways || agent.body.planner.is_some() {
-            let way = atlas.way(from, goal, radius)?;
-            points.extend(way.bends.iter().flat_map(along));
-            points.push(way.end);
+            let mut way = atlas.way(from, goal, radius)?;
             length += way.length;
+            loop {
+                points.extend(way.bends.iter().flat_map(along));
+                points.push(way.end);
+                let Some((portal, _)) = way.over else { break };
+                points.push(landing(atlas.scene(), portal, way.end));
+                way = atlas.way(*points.last()?, goal, radius)?;
+            }
         } else {
             let to = match goal {
                 Goal::Point(point) => *point,
@@ -62,6 +67,13 @@ fn way(atlas: &Atlas, agent: &Agent, route: &Route) -> Option<(Vec<Vec2>, f64)> 
         }
     }
     (points.len() > 1).then_some((points, length))
+}
+
+/// Where one goes on who crosses the line of a portal at a place.
+fn landing(scene: &Scene, portal: usize, at: Vec2) -> Vec2 {
+    let portal = &scene.storeys.portals[portal];
+    let share = (at - portal.line.a).norm() / portal.line.length();
+    portal.landing.a + (portal.landing.b - portal.landing.a) * share + portal.onward * 0.01
 }
 
 /// Points along an arc.

@@ -91,6 +91,14 @@ pub struct LetDecl {
     pub body: Expr,
 }
 
+impl SceneItem {
+    /// The item itself, or those of a level.
+    pub fn on_all_levels(&self) -> impl Iterator<Item = &Self> {
+        let within = if let Self::Level { items, .. } = self { items.as_slice() } else { &[] };
+        std::iter::once(self).chain(within)
+    }
+}
+
 /// One declaration of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneItem {
@@ -140,6 +148,26 @@ pub enum SceneItem {
         /// Its ends.
         ends: [Expr; 2],
         /// When it is closed.
+        fields: Vec<Field>,
+        /// Where.
+        span: Span,
+    },
+    /// `level first { height = 4 m; … }`: its items have names such as `first.exit`.
+    Level {
+        /// Its name.
+        name: Ident,
+        /// Its height.
+        fields: Vec<Field>,
+        /// Its walls, regions and so on.
+        items: Vec<SceneItem>,
+    },
+    /// `stairs s: ground.foot -- first.head { width = 1.4 m; run = 6 m }`
+    Stairs {
+        /// Its name.
+        name: Ident,
+        /// Its lower and its upper line.
+        ends: [Expr; 2],
+        /// Width, run and speeds.
         fields: Vec<Field>,
         /// Where.
         span: Span,

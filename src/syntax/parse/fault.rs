@@ -183,6 +183,7 @@ fn declaration(rule: Rule) -> Rule {
         Rule::line_of_state => Rule::state_item,
         Rule::line_of_updates => Rule::update,
         Rule::line_of_program => Rule::program_item,
+        Rule::line_of_level => Rule::level_item,
         _ => Rule::field,
     }
 }

@@ -15,6 +15,7 @@ use std::rc::Rc;
 pub(in crate::syntax) fn inner(rule: Rule) -> Rule {
     match rule {
         Rule::scene => Rule::line_of_scene,
+        Rule::level => Rule::line_of_level,
         Rule::moves => Rule::line_of_moves,
         Rule::paths => Rule::line_of_paths,
         Rule::process => Rule::line_of_process,
@@ -33,7 +34,7 @@ fn part(rule: Rule) -> Place {
     match rule {
         Rule::line_of_scenario => Place::Scenario,
         Rule::line_of_properties => Place::Properties,
-        Rule::line_of_scene => Place::Scene,
+        Rule::line_of_scene | Rule::line_of_level => Place::Scene,
         Rule::line_of_process => Place::Process,
         Rule::line_of_program => Place::Program,
         Rule::line_of_behaviour => Place::Behaviour,

@@ -76,7 +76,7 @@ fn place(rule: Rule) -> Option<Place> {
     Some(match rule {
         Rule::item => Place::Scenario,
         Rule::property_item => Place::Properties,
-        Rule::scene_item => Place::Scene,
+        Rule::scene_item | Rule::level_item => Place::Scene,
         Rule::process_item => Place::Process,
         Rule::program_item => Place::Program,
         Rule::behaviour_item => Place::Behaviour,

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
-use crate::syntax::ast::{Expr, SceneItem, ShapeExpr};
+use crate::syntax::ast::{Expr, Field, Ident, SceneItem, ShapeExpr};
 
 impl Builder<'_> {
     pub(super) fn scene(&mut self, pair: Pair<'_>) -> Vec<SceneItem> {
@@ -43,6 +43,15 @@ impl Builder<'_> {
         }
         let name = parts.part(Rule::name).map(|name| self.ident(&name));
         match rule {
+            Rule::level => {
+                let (items, fields) = self.level(parts);
+                Some(SceneItem::Level { items: within(name.as_ref()?, items), name: name?, fields })
+            }
+            Rule::stairs => {
+                let a = self.expr(parts.part(Rule::place)?);
+                let ends = [a, self.expr(parts.part(Rule::place)?)];
+                Some(SceneItem::Stairs { name: name?, ends, fields: self.body(parts), span })
+            }
             Rule::wall => {
                 let points = parts.map(|point| self.expr(point)).collect();
                 Some(SceneItem::Wall { name, points, span })
@@ -66,6 +75,22 @@ impl Builder<'_> {
             }
             _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?) }),
         }
+    }
+
+    /// The items and the fields of a level.
+    fn level(&mut self, mut parts: Parts<'_>) -> (Vec<SceneItem>, Vec<Field>) {
+        let (mut items, mut fields) = (Vec::new(), Vec::new());
+        if let Some(block) = parts.part(Rule::block) {
+            self.block(&block, Rule::line_of_level, &mut |builder, part| {
+                let part = part.into_inner().next()?;
+                match part.as_rule() {
+                    Rule::field => fields.push(builder.field(part)?),
+                    _ => items.push(builder.scene_item(part)?),
+                }
+                Some(())
+            });
+        }
+        (items, fields)
     }
 
     pub(super) fn shape(&mut self, pair: Pair<'_>) -> Option<ShapeExpr> {
@@ -95,4 +120,23 @@ impl Builder<'_> {
     fn outline(&mut self, pair: Pair<'_>) -> Option<Vec<Expr>> {
         pair.into_inner().map(|corner| self.corner(corner)).collect()
     }
+}
+
+/// The items of a level under their full names.
+fn within(level: &Ident, mut items: Vec<SceneItem>) -> Vec<SceneItem> {
+    for item in &mut items {
+        let name = match item {
+            SceneItem::Wall { name, .. } | SceneItem::Obstacle { name, .. } => name.as_mut(),
+            SceneItem::Import { called, .. } => called.as_mut(),
+            SceneItem::Region { name, .. }
+            | SceneItem::Point { name, .. }
+            | SceneItem::Line { name, .. }
+            | SceneItem::Door { name, .. } => Some(name),
+            SceneItem::Level { .. } | SceneItem::Stairs { .. } | SceneItem::Periodic { .. } => None,
+        };
+        if let Some(name) = name {
+            name.name = format!("{}.{}", level.name, name.name);
+        }
+    }
+    items
 }

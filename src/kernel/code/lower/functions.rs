@@ -54,7 +54,7 @@ impl Lowering<'_> {
 
     /// A body that has left has no gap: infinite.
     fn clearance(&mut self, who: Who) -> Id {
-        let mut gap = if self.is_closed() {
+        let mut gap = if self.is_closed() || !self.is_flat() {
             self.nearest_gap(who)
         } else {
             let crowd = self.others(who);

@@ -1,9 +1,9 @@
 //! What stands still in a scene, as JSON in whole millimetres. A piece of a wall is `[x, y, x, y]`; a list of points has x
 //! and y in turn.
 
-use crate::base::geometry::{Segment, Shape, Vec2};
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::base::tick::Clock;
-use crate::model::{Goal, Group, Leg, Move, Moves, Region, Route, Scenario, Scene};
+use crate::model::{Goal, Group, Island, Leg, Move, Moves, Region, Route, Scenario, Scene};
 use serde_json::{Value, json};
 
 /// The middles of the goals of a route.
@@ -78,7 +78,13 @@ pub(super) fn scene(scenario: &Scenario) -> Value {
         let members: Vec<u32> = one.members.iter().map(|id| id.0).collect();
         json!({ "name": one.name, "members": members })
     };
+    let island = |one: &Island| {
+        let Bounds { low, high } = one.bounds;
+        let corners = [place(low), place(high)].concat();
+        json!({ "name": one.name, "box": corners })
+    };
     json!({
+        "islands": scene.storeys.islands.iter().map(island).collect::<Vec<_>>(),
         "unit": if scenario.clock == Clock::Steps { "steps" } else { "s" },
         "walls": scene.with_closed(0).walls().map(wall).collect::<Vec<_>>(),
         "solids": scene.solids().map(outline).collect::<Vec<_>>(),

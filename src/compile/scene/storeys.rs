@@ -1,0 +1,447 @@
+//! Levels and stairs: each level is settled in its own coordinates, then all are laid out side by side in one plane.
+
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
+use crate::compile::context::{
+    Context, Locals, Lowered, Reported,
+    plans::PlanPart,
+    symbols::{Meaning, unknown},
+    typed::Typed,
+};
+use crate::compile::dimension::Dimension;
+use crate::compile::files::Files;
+use crate::compile::lower::shapes;
+use crate::compile::scene::{doors::Door, settle_region, settle_scene};
+use crate::model::storeys::APART;
+use crate::model::{self, Barrier, Bool, Comparison, Island, Num, Obstacle, Portal, Storeys, Who};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::source::Span;
+
+/// Nearer than this to a barrier, the middle of a line of stairs lies in it, m.
+const IN_WALL: f64 = 0.05;
+/// At least so narrow and so short stairs are, m.
+const NARROWEST: f64 = 0.4;
+/// A line faces another one if at least this share of the way to it leads straight ahead.
+const FACES: f64 = 0.3;
+
+/// The shares up and down, for a run and a rise, m.
+type Table = fn(f64, f64) -> [f64; 2];
+
+/// Speeds on stairs as shares of that on a level, of the way in the plan.
+///
+/// Weidmann 1993, tables 3 and 5: 1.34 m/s on a level, 0.610 up and 0.694 down. SFPE Handbook, Gwynne and Rosenbaum 2016: along
+/// the slope k/1.40 with k = 0.863 sqrt(tread/riser); the cosine of the slope makes it one in the plan.
+const TABLES: [(&str, Table); 2] = [
+    ("weidmann", |_, _| [0.610 / 1.34, 0.694 / 1.34]),
+    ("sfpe", |run, rise| {
+        let slope = (run * run + rise * rise).sqrt();
+        [51.8 / 60.0 * (run / rise).sqrt() / 1.40 * (run / slope); 2]
+    }),
+];
+
+/// Settles scenes with levels; their doors.
+pub(crate) fn settle<'a>(context: &mut Context<'a>, scenes: &[&'a [SceneItem]], files: &Files) -> Vec<Door> {
+    let mut doors: Vec<(usize, Door)> = Vec::new();
+    let mut heights = Vec::new();
+    let mut imported = Vec::new();
+    let items = || scenes.iter().flat_map(|items| items.iter());
+    let levels = items().filter_map(|item| match item {
+        SceneItem::Level { name, fields, items } => Some((name, fields, items)),
+        _ => None,
+    });
+    for (level, (name, fields, items)) in levels.enumerate() {
+        heights.push(height(context, name, fields));
+        context.levels.frame = Some(level);
+        let known = &context.levels.all[level];
+        let (mut barrier, mut line) = (known.barriers.start, known.lines.start);
+        let first = context.scene.barriers.len();
+        let settled = settle_scene(context, items, files, (&mut barrier, &mut line));
+        doors.extend(settled.into_iter().map(|door| (level, door)));
+        imported.push(first..context.scene.barriers.len());
+        context.levels.frame = None;
+    }
+    let is_sound = check_heights(context, &heights);
+    lay_out(context, &heights, &imported, &mut doors);
+    let mut stairs = Vec::new();
+    for item in items() {
+        match item {
+            SceneItem::Level { items, .. } => {
+                for item in items {
+                    if let SceneItem::Level { name, .. } | SceneItem::Stairs { name, .. } = item {
+                        let said = format!("`{}` lies within a level", name.name);
+                        let error = error!(E0412, name.span, "{said}"; hint: "write it beside the levels, in the scene");
+                        context.note(error);
+                    }
+                }
+            }
+            SceneItem::Stairs { name, ends, fields, .. } => stairs.push((name, ends, fields)),
+            SceneItem::Region { name, shape } if is_of_names(shape) => settle_region(context, name, shape),
+            SceneItem::Periodic { axis, .. } => {
+                let error = error!(E0412, axis.span, "a scene with levels has no periods");
+                context.note(error);
+            }
+            other => {
+                let error = error!(E0412, place_of(other), "this lies on no level";
+                    hint: "write it within a level: `level ground {{ … }}`");
+                context.note(error);
+            }
+        }
+    }
+    for (name, ends, fields) in stairs {
+        if is_sound {
+            let _ = flight(context, name, ends, fields);
+        }
+    }
+    doors.into_iter().map(|(_, door)| door).collect()
+}
+
+/// Whether a region is made of others.
+fn is_of_names(shape: &ShapeExpr) -> bool {
+    match shape {
+        ShapeExpr::Named(_) | ShapeExpr::Of(_) => true,
+        ShapeExpr::Parts(parts) => parts.iter().all(is_of_names),
+        _ => false,
+    }
+}
+
+fn place_of(item: &SceneItem) -> Span {
+    match item {
+        SceneItem::Wall { span, .. }
+        | SceneItem::Line { span, .. }
+        | SceneItem::Door { span, .. }
+        | SceneItem::Import { span, .. }
+        | SceneItem::Stairs { span, .. }
+        | SceneItem::Periodic { span, .. } => *span,
+        SceneItem::Obstacle { shape, .. } | SceneItem::Region { shape, .. } => shape.span(),
+        SceneItem::Point { at, .. } => at.span,
+        SceneItem::Level { name, .. } => name.span,
+    }
+}
+
+/// The height of a level, m: 0 where none is written.
+fn height(context: &mut Context<'_>, name: &Ident, fields: &[Field]) -> (f64, Span) {
+    let mut height = (0.0, name.span);
+    for field in fields {
+        match (field.name.name.as_str(), &field.value) {
+            ("height", Value::Plain(expr)) => {
+                if let Ok(number) = context.number_of(expr, Dimension::LENGTH, &Locals::default()) {
+                    height = (number.value, expr.span);
+                }
+            }
+            (known, _) => {
+                let error = unknown("field", known, field.name.span, Code::E0207, ["height"].into_iter());
+                context.note(error);
+            }
+        }
+    }
+    height
+}
+
+fn check_heights(context: &mut Context<'_>, heights: &[(f64, Span)]) -> bool {
+    for (k, (height, span)) in heights.iter().enumerate() {
+        if let Some(first) = heights[..k].iter().position(|(other, _)| other == height) {
+            let [a, b] = [first, k].map(|k| context.levels.all[k].name.clone());
+            let error = error!(E0412, *span, "`{a}` and `{b}` have the same height";
+                hint: "write the height in which the floor of each level lies: `height = 4 m`");
+            context.note(error.related(heights[first].1, "the other level"));
+            return false;
+        }
+    }
+    true
+}
+
+/// Moves the levels side by side: the lowest one stays where it is.
+fn lay_out(
+    context: &mut Context<'_>,
+    heights: &[(f64, Span)],
+    imported: &[std::ops::Range<usize>],
+    doors: &mut [(usize, Door)],
+) {
+    let mut order: Vec<usize> = (0..heights.len()).collect();
+    order.sort_by(|a, b| heights[*a].0.total_cmp(&heights[*b].0));
+    let mut edge: Option<f64> = None;
+    for level in order {
+        let known = context.levels.all[level].clone();
+        let own = format!("{}.", known.name);
+        let barriers = || known.barriers.clone().chain(imported[level].clone());
+        let is_own = |name: &str| name.starts_with(&own);
+        let scene = &context.scene;
+        let of_barriers = barriers().filter_map(|k| scene.barriers[k].obstacle.bounds());
+        let regions = scene.regions.iter().zip(&context.shapes).filter(|(region, _)| is_own(&region.name));
+        let of_regions = regions.filter_map(|(_, shape)| Some(shape.clone()?.ok()?.bounds()));
+        let of_plans = context.plans.iter().filter(|plan| is_own(&plan.name)).flat_map(|plan| &plan.parts);
+        let of_plans = of_plans.flatten().filter_map(|(_, part)| match part {
+            PlanPart::Room(shape) => Some(shape.bounds()),
+            PlanPart::Door(_) => None,
+        });
+        let points = scene.points.iter().filter(|(name, _)| is_own(name)).map(|(_, p)| *p);
+        let lines = scene.lines[known.lines.clone()].iter().flat_map(|line| [line.segment.a, line.segment.b]);
+        let corners = of_barriers.chain(of_regions).chain(of_plans).flat_map(|b| [b.low, b.high]);
+        let bounds = Bounds::around(corners.chain(points).chain(lines)).unwrap_or_default();
+        // Whole metres keep the digits of coordinates.
+        let way = Vec2::new(edge.map_or(0.0, |edge| (edge + APART - bounds.low.x).ceil()), 0.0);
+        edge = Some(bounds.high.x + way.x);
+        let bounds = Bounds { low: bounds.low + way, high: bounds.high + way };
+        let height = Some(heights[level].0);
+        context.scene.storeys.islands.push(Island { name: known.name, origin: way, bounds, height });
+        let moved = |segment: Segment| Segment::new(segment.a + way, segment.b + way);
+        for k in known.barriers.clone().chain(imported[level].clone()) {
+            let barrier = &mut context.scene.barriers[k];
+            *barrier = barrier.moved(way);
+        }
+        for (region, shape) in context.scene.regions.iter_mut().zip(&mut context.shapes) {
+            if region.name.starts_with(&own) {
+                region.shape = region.shape.moved(way);
+                if let Some(Ok(shape)) = shape {
+                    *shape = shape.moved(way);
+                }
+            }
+        }
+        for plan in context.plans.iter_mut().filter(|plan| plan.name.starts_with(&own)) {
+            for (_, part) in plan.parts.iter_mut().flatten() {
+                match part {
+                    PlanPart::Room(shape) => *shape = shape.moved(way),
+                    PlanPart::Door(segment) => *segment = moved(*segment),
+                }
+            }
+        }
+        for (_, point) in context.scene.points.iter_mut().filter(|(name, _)| name.starts_with(&own)) {
+            *point += way;
+        }
+        for line in &mut context.scene.lines[known.lines.clone()] {
+            line.segment = moved(line.segment);
+        }
+        for (_, door) in doors.iter_mut().filter(|(of, _)| *of == level) {
+            door.segment = moved(door.segment);
+        }
+    }
+}
+
+/// A place on a level: `first (3, 4)`.
+pub(crate) fn point_on(
+    context: &mut Context<'_>,
+    level: usize,
+    span: Span,
+    arguments: &[Expr],
+    locals: &Locals,
+) -> Lowered<Typed> {
+    let name = context.levels.all[level].name.clone();
+    let [x, y] = arguments else {
+        return context.report(error!(E0204, span, "a place on `{name}` has two coordinates";
+            hint: "write `{name} (3, 4)`"));
+    };
+    let point =
+        Expr { kind: ExprKind::Point { x: Box::new(x.clone()), y: Box::new(y.clone()), unit: None }, span };
+    let local = context.lower(&point, locals)?;
+    let Typed::Point(x, y) = local else {
+        return context.mismatch(span, "numbers known beforehand", &local);
+    };
+    let place = shapes::place(context, span, (x, y))?;
+    if context.levels.frame == Some(level) {
+        return Ok(Typed::Point(x, y));
+    }
+    let island = context.scene.storeys.islands.iter().find(|island| island.name == name);
+    let Some(island) = island else {
+        return context.report(error!(E0205, span, "a place on another level is not known here"));
+    };
+    if island.origin == Vec2::zeros() {
+        return Ok(Typed::Point(x, y));
+    }
+    let place = place + island.origin;
+    if island.bounds.distance(place) > 0.45 * APART {
+        return context.report(error!(E0412, span, "this place lies outside of the level `{name}`";
+            hint: "a level reaches 9 m beyond its walls, regions and points: declare a region around the place"));
+    }
+    Ok(Typed::point(place))
+}
+
+/// The fields of stairs.
+struct Fields {
+    width: Option<f64>,
+    run: Option<f64>,
+    speeds: [Option<f64>; 2],
+    table: usize,
+}
+
+fn fields(context: &mut Context<'_>, written: &[Field]) -> Lowered<Fields> {
+    let mut out = Fields { width: None, run: None, speeds: [None; 2], table: 0 };
+    for field in written {
+        let name = field.name.name.as_str();
+        let Value::Plain(expr) = &field.value else {
+            return context.report(error!(E0305, field.value.span(), "expected a number"));
+        };
+        let mut number = |dimension| {
+            let number = context.number_of(expr, dimension, &Locals::default())?;
+            if number.value > 0.0 && number.value.is_finite() {
+                return Ok(number.value);
+            }
+            context.report(error!(E0412, expr.span, "`{name}` must be positive"))
+        };
+        match name {
+            "width" => out.width = Some(number(Dimension::LENGTH)?),
+            "run" => out.run = Some(number(Dimension::LENGTH)?),
+            "up" => out.speeds[0] = Some(number(Dimension::NONE)?),
+            "down" => out.speeds[1] = Some(number(Dimension::NONE)?),
+            "speeds" => {
+                let named = if let ExprKind::Name(name) = &expr.kind { name.as_str() } else { "" };
+                let Some(table) = TABLES.iter().position(|(table, _)| *table == named) else {
+                    return context.report(error!(E0412, expr.span, "`speeds` names a table";
+                        hint: "write `speeds = weidmann`, `speeds = sfpe`, or shares of the speed on a level: `up = 0.5; down = 0.6`"));
+                };
+                out.table = table;
+            }
+            _ => {
+                let known = ["width", "run", "up", "down", "speeds"].into_iter();
+                context.note(unknown("field", name, field.name.span, Code::E0207, known));
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// A line of stairs on its level: its island, and the line.
+fn line_of(context: &mut Context<'_>, name: &Ident, end: &Expr) -> Lowered<(u32, Segment)> {
+    let typed = context.lower(end, &Locals::default())?;
+    let Typed::Line(id) = typed else { return context.mismatch(end.span, "a line of a level", &typed) };
+    let segment = context.scene.lines[id.0 as usize].segment;
+    let middle = 0.5 * (segment.a + segment.b);
+    if let Some(barrier) = context.scene.barriers.iter().find(|one| one.obstacle.distance(middle) < IN_WALL) {
+        let said = format!("the line of the stairs `{}` lies in {}", name.name, barrier.phrase());
+        return context.report(error!(E0412, end.span, "{said}"; hint: "leave the wall open there"));
+    }
+    let taken =
+        context.scene.storeys.portals.iter().find(|portal| portal.line.distance_to(&segment) < IN_WALL);
+    if let Some(portal) = taken {
+        let strip = portal.islands.iter().find_map(|k| {
+            let island = &context.scene.storeys.islands[*k as usize];
+            island.height.is_none().then(|| island.name.clone())
+        });
+        let said =
+            format!("two stairs begin at one line, `{}` and `{}`", strip.unwrap_or_default(), name.name);
+        return context.report(error!(E0412, end.span, "{said}"; hint: "give each flight a line of its own"));
+    }
+    Ok((context.scene.storeys.island_at(middle) as u32, segment))
+}
+
+/// The direction in which one goes up at a line, a unit vector. `way` leads from the foot to the head.
+fn upward(line: &Segment, way: Vec2) -> Vec2 {
+    let along = (line.b - line.a).normalize();
+    let right = Vec2::new(along.y, -along.x);
+    let ahead = way.dot(&right);
+    // Else the first end lies on the left of who goes up.
+    if ahead < -FACES * way.norm() { -right } else { right }
+}
+
+/// `stairs s: ground.foot -- first.head { … }`
+fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[Field]) -> Lowered<()> {
+    let read = fields(context, written);
+    let (foot, head) = (line_of(context, name, &ends[0]), line_of(context, name, &ends[1]));
+    let (fields, (low, foot), (high, head)) = (read?, foot?, head?);
+    let storeys = &context.scene.storeys;
+    let [lower, upper] = [low, high].map(|k| storeys.islands[k as usize].clone());
+    let rise = match (lower.height, upper.height) {
+        (Some(a), Some(b)) if b > a => b - a,
+        (Some(a), Some(b)) => {
+            let said = if a == b { "lead from a level to the same one" } else { "lead downward" };
+            let span = ends[0].span.to(ends[1].span);
+            return context.report(error!(E0412, span, "the stairs `{}` {said}", name.name;
+                hint: "write the line of the lower level first: `stairs s: ground.foot -- first.head`"));
+        }
+        _ => return Err(Reported),
+    };
+    let middle = |line: &Segment| 0.5 * (line.a + line.b);
+    let way = (middle(&head) - upper.origin) - (middle(&foot) - lower.origin);
+    let Some(run) = fields.run.or(Some(way.norm()).filter(|run| *run >= NARROWEST)) else {
+        return context.report(error!(E0412, name.span, "the stairs `{}` have no length", name.name;
+            hint: "write how far they lead in the plan: `run = 6 m`"));
+    };
+    let most = foot.length().min(head.length());
+    let width = fields.width.unwrap_or(most);
+    if width > most + 1e-9 || width < NARROWEST {
+        let said = format!("the stairs `{}` are {width:.2} m wide, their lines {most:.2} m", name.name);
+        return context.report(error!(E0412, name.span, "{said}";
+            hint: "stairs are at least {NARROWEST} m wide, and no wider than their lines"));
+    }
+    let table = TABLES[fields.table].1(run, rise);
+    let [up, down] = [0, 1].map(|k| fields.speeds[k].unwrap_or(table[k]));
+    // Strips lie in a row above the levels.
+    let islands = &context.scene.storeys.islands;
+    let levels = islands.iter().filter(|island| island.height.is_some()).map(|island| &island.bounds);
+    let top = levels.map(|b| b.high.y).fold(f64::NEG_INFINITY, f64::max);
+    let flights = islands.iter().filter(|island| island.height.is_none());
+    let left = islands.iter().map(|island| island.bounds.low.x).fold(f64::INFINITY, f64::min);
+    let edge = flights.map(|island| island.bounds.high.x + APART).fold(left, f64::max);
+    let origin = Vec2::new(edge.ceil(), (top + APART).ceil());
+    let corner = |x: f64, y: f64| origin + Vec2::new(x, y);
+    let strip = Shape::rectangle(corner(0.0, 0.0), corner(run, width));
+    let sides = [0.0, width].map(|y| Segment::new(corner(0.0, y), corner(run, y)));
+    let across = |x: f64| Segment::new(corner(x, width), corner(x, 0.0));
+    // A line from left to right, as wide as the stairs.
+    let opening = |line: &Segment, upward: Vec2| {
+        let left = Vec2::new(-upward.y, upward.x) * (0.5 * width);
+        Segment::new(middle(line) + left, middle(line) - left)
+    };
+    let (into, out) = (upward(&foot, way), upward(&head, way));
+    let (below, above) = (opening(&foot, into), opening(&head, out));
+    let flight = islands.len() as u32;
+    let ahead = Vec2::new(1.0, 0.0);
+    let portal = |islands, (line, across), (landing, onward), speed, approach| Portal {
+        islands,
+        line,
+        across,
+        landing,
+        onward,
+        speed,
+        approach,
+    };
+    let portals = [
+        portal([low, flight], (below, into), (across(0.0), ahead), up, 1.0),
+        portal([flight, high], (across(run), ahead), (above, out), 1.0, up),
+        portal([high, flight], (above, -out), (across(run), -ahead), down, 1.0),
+        portal([flight, low], (across(0.0), -ahead), (below, -into), 1.0, down),
+    ];
+    let scene = &mut context.scene;
+    scene.storeys.islands.push(Island {
+        name: name.name.clone(),
+        origin,
+        bounds: strip.bounds(),
+        height: None,
+    });
+    scene.storeys.portals.extend(portals);
+    scene.barriers.push(Barrier { name: name.name.clone(), obstacle: Obstacle::Wall(sides.to_vec()) });
+    if let Some(Meaning::Stairs(id)) =
+        context.names.scopes[0].get(&name.name).map(|entry| entry.meaning.clone())
+    {
+        context.scene.regions[id.0 as usize].shape = strip.clone();
+        context.shapes[id.0 as usize] = Some(Ok(strip));
+    }
+    Ok(())
+}
+
+/// The full name of a member of a level: `ground.exit`.
+pub(crate) fn member(context: &Context<'_>, expr: &Expr, locals: &Locals) -> Option<String> {
+    let ExprKind::Member(base, member) = &expr.kind else { return None };
+    let ExprKind::Name(level) = &base.kind else { return None };
+    let is_bound = locals.names.iter().any(|(bound, _)| bound == level);
+    context.level(level).filter(|_| !is_bound)?;
+    Some(format!("{level}.{}", member.name))
+}
+
+/// The number, among the islands, of the level that an expression names.
+pub(crate) fn level_of(context: &Context<'_>, expr: &Expr, locals: &Locals) -> Option<usize> {
+    let ExprKind::Name(name) = &expr.kind else { return None };
+    let is_bound = locals.names.iter().any(|(bound, _)| bound == name);
+    context.level(name).filter(|_| !is_bound)?;
+    context.scene.storeys.islands.iter().position(|island| island.name == *name)
+}
+
+/// Whether somebody is on a level.
+pub(crate) fn is_on(who: Who, level: usize) -> Bool {
+    let number = Num::Of(model::Field::Storey, who);
+    Bool::Compare(Comparison::Equal, Box::new(number), Box::new(Num::Constant(level as f64)))
+}
+
+/// The coordinates of a place known beforehand on its own level, m.
+pub(crate) fn own_coordinates(storeys: &Storeys, p: Vec2) -> Vec2 {
+    storeys.local(p).map_or(p, |(_, own)| own)
+}
