@@ -90,6 +90,31 @@ impl Scene {
         out
     }
 
+    /// What lies on one island alone, with the numbers of the whole.
+    pub fn island(&self, island: usize) -> Self {
+        let is_here = |p: Vec2| self.storeys.island_at(p) == island;
+        let barrier = |barrier: &Barrier| {
+            let obstacle = match &barrier.obstacle {
+                Obstacle::Wall(pieces) => {
+                    Obstacle::Wall(pieces.iter().filter(|piece| is_here(piece.a)).copied().collect())
+                }
+                Obstacle::Solid(shape) if is_here(shape.inner_point()) => Obstacle::Solid(shape.clone()),
+                Obstacle::Solid(_) => Obstacle::Wall(Vec::new()),
+            };
+            Barrier { name: barrier.name.clone(), obstacle }
+        };
+        let region = |region: &Region| {
+            let parts = region.shape.parts().iter().filter(|part| is_here(part.inner_point()));
+            Region { shape: Shape::Parts(parts.cloned().collect()), ..region.clone() }
+        };
+        Self {
+            barriers: self.barriers.iter().map(barrier).collect(),
+            regions: self.regions.iter().map(region).collect(),
+            storeys: Storeys::default(),
+            ..self.clone()
+        }
+    }
+
     /// The barriers, and behind them their images one period away, all in the same order: what is seen and felt from a place
     /// of the scene.
     pub fn unrolled(&self) -> Cow<'_, [Barrier]> {

@@ -12,8 +12,7 @@
 //!   +----------+   +----------+
 //! ```
 
-use super::scene::{Barrier, Obstacle, Region, Scene};
-use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
+use crate::base::geometry::{Bounds, Segment, Vec2};
 
 /// Islands are so far apart, m: beyond the reach of all forces.
 pub const APART: f64 = 20.0;
@@ -109,33 +108,6 @@ impl Storeys {
     pub const fn reverse(portal: usize) -> usize {
         // Up from the foot and down to it, up to the head and down from it.
         portal ^ 3
-    }
-}
-
-impl Scene {
-    /// What lies on one island alone, with the numbers of the whole.
-    pub fn island(&self, island: usize) -> Self {
-        let is_here = |p: Vec2| self.storeys.island_at(p) == island;
-        let barrier = |barrier: &Barrier| {
-            let obstacle = match &barrier.obstacle {
-                Obstacle::Wall(pieces) => {
-                    Obstacle::Wall(pieces.iter().filter(|piece| is_here(piece.a)).copied().collect())
-                }
-                Obstacle::Solid(shape) if is_here(shape.inner_point()) => Obstacle::Solid(shape.clone()),
-                Obstacle::Solid(_) => Obstacle::Wall(Vec::new()),
-            };
-            Barrier { name: barrier.name.clone(), obstacle }
-        };
-        let region = |region: &Region| {
-            let parts = region.shape.parts().iter().filter(|part| is_here(part.inner_point()));
-            Region { shape: Shape::Parts(parts.cloned().collect()), ..region.clone() }
-        };
-        Self {
-            barriers: self.barriers.iter().map(barrier).collect(),
-            regions: self.regions.iter().map(region).collect(),
-            storeys: Storeys::default(),
-            ..self.clone()
-        }
     }
 }
 

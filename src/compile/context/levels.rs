@@ -20,19 +20,17 @@ pub(crate) struct Level {
     pub(crate) lines: Range<usize>,
 }
 
-impl Context<'_> {
-    /// The full name of what an unadorned name means among the items of a level, if it means something of this level.
-    pub(crate) fn on_level(&self, name: &str) -> Option<String> {
-        let level = &self.levels.all[self.levels.frame?];
-        let full = format!("{}.{name}", level.name);
-        self.names.scopes[0].get(&full).map(|_| full)
-    }
+/// The full name of what an unadorned name means among the items of a level, if it means something of this level.
+pub(crate) fn on_level(context: &Context<'_>, name: &str) -> Option<String> {
+    let level = &context.levels.all[context.levels.frame?];
+    let full = format!("{}.{name}", level.name);
+    context.names.scopes[0].get(&full).map(|_| full)
+}
 
-    /// The level that a name stands for.
-    pub(crate) fn level(&self, name: &str) -> Option<usize> {
-        match self.names.scopes[0].get(name)?.meaning {
-            Meaning::Level(level) => Some(level),
-            _ => None,
-        }
+/// The level that a name stands for.
+pub(crate) fn level(context: &Context<'_>, name: &str) -> Option<usize> {
+    match context.names.scopes[0].get(name)?.meaning {
+        Meaning::Level(level) => Some(level),
+        _ => None,
     }
 }

@@ -11,14 +11,13 @@ use crate::compile::context::{
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::{
     builtin::{CHOICES, DISTRIBUTIONS},
-    counted_arguments, function, legs, margins, modes, name, process_names, select, shapes, traffic,
+    counted_arguments, function, legs, margins, modes, name, process_names, select, shapes, storeys, traffic,
 };
-use crate::compile::scene::storeys;
 use crate::logic::Term;
 use crate::model::function::{Signature, Special};
 use crate::model::{BuiltIn, Num};
 use crate::syntax::ast::LetDecl;
-use crate::syntax::ast::{Expr, Ident};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Label;
 use crate::syntax::parse::foreign_word;
@@ -64,7 +63,7 @@ pub(crate) fn lower_call(
         return lower_let(context, (scope, decl), expr.span, arguments, locals);
     }
     if let Some((_, Meaning::Level(level))) = found {
-        return storeys::point_on(context, level, expr.span, arguments, locals);
+        return place_on_level(context, level, expr.span, arguments, locals);
     }
     if let Some(built_in) = BuiltIn::find(&function.name) {
         return call_built_in(context, built_in, (expr, function), arguments, locals);
@@ -74,6 +73,29 @@ pub(crate) fn lower_call(
                 hint: "use it as the value of a field or of `after`; it may have a factor: `poisson(4) * (1 s / 3)`"));
     }
     unknown_function(context, function, expr.span, arguments, locals)
+}
+
+/// `first (3, 4)`
+fn place_on_level(
+    context: &mut Context<'_>,
+    level: usize,
+    span: Span,
+    arguments: &[Expr],
+    locals: &Locals,
+) -> Lowered<Typed> {
+    let [x, y] = arguments else {
+        let name = &context.levels.all[level].name;
+        let error =
+            error!(E0204, span, "a place on `{name}` has two coordinates"; hint: "write `{name} (3, 4)`");
+        return context.report(error);
+    };
+    let kind = ExprKind::Point { x: Box::new(x.clone()), y: Box::new(y.clone()), unit: None };
+    let local = context.lower(&Expr { kind, span }, locals)?;
+    let Typed::Point(x, y) = local else {
+        return context.mismatch(span, "numbers known beforehand", &local);
+    };
+    let place = shapes::place(context, span, (x, y))?;
+    storeys::place_on(context, level, span, (place, (x, y)))
 }
 
 fn unknown_function(

@@ -27,6 +27,7 @@ pub(crate) mod quantifier;
 pub(crate) mod robustness;
 pub(crate) mod select;
 pub(crate) mod shapes;
+pub(crate) mod storeys;
 pub(crate) mod tally;
 pub(crate) mod temporal;
 pub(crate) mod times;
@@ -43,7 +44,6 @@ use crate::compile::context::{
     typed::Typed,
 };
 use crate::compile::dimension::{self, Dimension};
-use crate::compile::scene::storeys;
 use crate::logic::Window;
 use crate::syntax::ast::BinaryOp;
 use crate::syntax::ast::Bound;

@@ -1,5 +1,6 @@
 //! Names and members of sets.
 
+use crate::compile::context::levels;
 use crate::compile::context::symbols::Param;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
@@ -50,7 +51,7 @@ pub(crate) fn lower_name(
     if let Some(inside) = lower_inside_behaviour(context, name, span, locals) {
         return inside;
     }
-    let full = context.on_level(name);
+    let full = levels::on_level(context, name);
     let name = full.as_deref().unwrap_or(name);
     let Some((scope, meaning)) = context.look_up(name, locals.scope) else {
         return match name {

@@ -1,12 +1,13 @@
 //! Rooms and doors of floor plans by the names that their files give them: `plan.foyer`, `plan["Room 12"]`.
 
+use crate::compile::context::levels;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     plans::PlanPart,
     symbols::{Meaning, unknown},
     typed::Typed,
 };
-use crate::compile::scene::storeys;
+use crate::compile::lower::storeys;
 use crate::model::{Line, LineId, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::codes::Code;
@@ -20,7 +21,7 @@ pub(crate) fn named(context: &Context<'_>, base: &Expr, locals: &Locals) -> Opti
         (ExprKind::Name(name), None) => name,
         _ => return None,
     };
-    let full = context.on_level(name);
+    let full = levels::on_level(context, name);
     match context.look_up(full.as_ref().unwrap_or(name), locals.scope) {
         Some((_, Meaning::Plan(plan))) if locals.names.iter().all(|(bound, _)| bound != name) => Some(plan),
         _ => None,

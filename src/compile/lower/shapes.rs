@@ -1,6 +1,7 @@
 //! Shapes and points of a scene, as expressions give them.
 
 use crate::base::geometry::{Polygon, Shape, Vec2, coordinate_fault};
+use crate::compile::context::levels;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     dependence::Meant,
@@ -146,7 +147,7 @@ pub(crate) fn in_reach(context: &mut Context<'_>, span: Span, p: Vec2) -> Lowere
 }
 
 fn named_shape(context: &mut Context<'_>, name: &Ident) -> Lowered<Shape> {
-    let full = context.on_level(&name.name);
+    let full = levels::on_level(context, &name.name);
     match context.look_up(full.as_ref().unwrap_or(&name.name), 0) {
         Some((_, Meaning::Stairs(id))) => region_shape(context, id, name.span),
         Some((_, Meaning::Region(id, shape))) => {

@@ -9,10 +9,9 @@ use crate::compile::context::{
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::files::Files;
-use crate::compile::lower::shapes;
 use crate::compile::scene::{doors::Door, settle_region, settle_scene};
 use crate::model::storeys::APART;
-use crate::model::{self, Barrier, Bool, Comparison, Island, Num, Obstacle, Portal, Storeys, Who};
+use crate::model::{Barrier, Island, Obstacle, Portal};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
@@ -217,44 +216,6 @@ fn lay_out(
     }
 }
 
-/// A place on a level: `first (3, 4)`.
-pub(crate) fn point_on(
-    context: &mut Context<'_>,
-    level: usize,
-    span: Span,
-    arguments: &[Expr],
-    locals: &Locals,
-) -> Lowered<Typed> {
-    let name = context.levels.all[level].name.clone();
-    let [x, y] = arguments else {
-        return context.report(error!(E0204, span, "a place on `{name}` has two coordinates";
-            hint: "write `{name} (3, 4)`"));
-    };
-    let point =
-        Expr { kind: ExprKind::Point { x: Box::new(x.clone()), y: Box::new(y.clone()), unit: None }, span };
-    let local = context.lower(&point, locals)?;
-    let Typed::Point(x, y) = local else {
-        return context.mismatch(span, "numbers known beforehand", &local);
-    };
-    let place = shapes::place(context, span, (x, y))?;
-    if context.levels.frame == Some(level) {
-        return Ok(Typed::Point(x, y));
-    }
-    let island = context.scene.storeys.islands.iter().find(|island| island.name == name);
-    let Some(island) = island else {
-        return context.report(error!(E0205, span, "a place on another level is not known here"));
-    };
-    if island.origin == Vec2::zeros() {
-        return Ok(Typed::Point(x, y));
-    }
-    let place = place + island.origin;
-    if island.bounds.distance(place) > 0.45 * APART {
-        return context.report(error!(E0412, span, "this place lies outside of the level `{name}`";
-            hint: "a level reaches 9 m beyond its walls, regions and points: declare a region around the place"));
-    }
-    Ok(Typed::point(place))
-}
-
 /// The fields of stairs.
 struct Fields {
     width: Option<f64>,
@@ -416,32 +377,4 @@ fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[
         context.shapes[id.0 as usize] = Some(Ok(strip));
     }
     Ok(())
-}
-
-/// The full name of a member of a level: `ground.exit`.
-pub(crate) fn member(context: &Context<'_>, expr: &Expr, locals: &Locals) -> Option<String> {
-    let ExprKind::Member(base, member) = &expr.kind else { return None };
-    let ExprKind::Name(level) = &base.kind else { return None };
-    let is_bound = locals.names.iter().any(|(bound, _)| bound == level);
-    context.level(level).filter(|_| !is_bound)?;
-    Some(format!("{level}.{}", member.name))
-}
-
-/// The number, among the islands, of the level that an expression names.
-pub(crate) fn level_of(context: &Context<'_>, expr: &Expr, locals: &Locals) -> Option<usize> {
-    let ExprKind::Name(name) = &expr.kind else { return None };
-    let is_bound = locals.names.iter().any(|(bound, _)| bound == name);
-    context.level(name).filter(|_| !is_bound)?;
-    context.scene.storeys.islands.iter().position(|island| island.name == *name)
-}
-
-/// Whether somebody is on a level.
-pub(crate) fn is_on(who: Who, level: usize) -> Bool {
-    let number = Num::Of(model::Field::Storey, who);
-    Bool::Compare(Comparison::Equal, Box::new(number), Box::new(Num::Constant(level as f64)))
-}
-
-/// The coordinates of a place known beforehand on its own level, m.
-pub(crate) fn own_coordinates(storeys: &Storeys, p: Vec2) -> Vec2 {
-    storeys.local(p).map_or(p, |(_, own)| own)
 }
