@@ -118,7 +118,8 @@ class Drawing {
     for (const region of scene.regions) {
       this.label(region.name, ...this.at(...middle(region.shape)), inks.soft);
     }
-    for (const { name, box } of scene.islands) {
+    // Stairs are regions, and have their labels.
+    for (const { name, box } of scene.islands.filter((one) => scene.regions.every((other) => other.name !== one.name))) {
       this.label(name, ...this.at((box[0] + box[2]) / 2000, box[3] / 1000 + 1), inks.ink);
     }
     for (const point of scene.points) {

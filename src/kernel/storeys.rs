@@ -73,7 +73,7 @@ impl Stairwells {
         }
     }
 
-    /// Carries those who have crossed a line in a step of the slots `moved`, which began it at `x` and `y`. Whether anybody was.
+    /// Carries those who have crossed a line in a step of the slots `moved`, which began it at `x` and `y`.
     #[cold]
     #[inline(never)]
     pub(super) fn carry(
@@ -82,7 +82,7 @@ impl Stairwells {
         state: &mut State,
         (x, y): (&[Lanes], &[Lanes]),
         moved: &[Mask],
-    ) -> bool {
+    ) {
         let mut crossings = Vec::new();
         for (block, &moved) in moved.iter().enumerate() {
             for lane in (moved & state.present[block]).iter() {
@@ -131,7 +131,6 @@ impl Stairwells {
         if carried {
             driver::ask(&program.drive, state);
         }
-        carried
     }
 
     /// Whether nobody stands where somebody would go on, but who wants to pass in the other direction.

@@ -80,7 +80,7 @@ impl Storeys {
     }
 
     /// Whether two places lie on different islands.
-    pub fn part(&self, a: Vec2, b: Vec2) -> bool {
+    pub fn separate(&self, a: Vec2, b: Vec2) -> bool {
         // Different islands are farther apart.
         !self.are_none() && (a - b).norm() > 0.5 * APART && self.island_at(a) != self.island_at(b)
     }

@@ -29,6 +29,7 @@ pub mod number;
 pub mod palette;
 pub mod paths;
 mod phrase;
+mod scenery;
 mod setting;
 pub mod svg;
 pub mod text;

@@ -234,7 +234,7 @@ pub(crate) fn distance(
     {
         let places = [(ax, ay), (bx, by)].map(|(x, y)| Vec2::new(x.value, y.value));
         let storeys = &context.scene.storeys;
-        if storeys.part(places[0], places[1]) {
+        if storeys.separate(places[0], places[1]) {
             let [a, b] = places.map(|p| storeys.place(p));
             return context
                 .report(error!(E0412, span, "{a} and {b} lie on two levels, and have no distance";

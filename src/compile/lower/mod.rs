@@ -34,7 +34,6 @@ pub(crate) mod times;
 pub(crate) mod traffic;
 pub(crate) mod weight;
 
-use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
@@ -149,12 +148,7 @@ impl Context<'_> {
                     return name::lower_member(self, base, field, locals);
                 }
                 if let Typed::Point(x, y) = typed {
-                    let own = storeys::own_coordinates(&self.scene.storeys, Vec2::new(x.value, y.value));
-                    let away = Vec2::new(x.value, y.value) - own;
-                    if away != Vec2::zeros() {
-                        let own = if field.name == "x" { own.x } else { own.y };
-                        return Ok(Typed::Number(Number::rounded(own, Dimension::LENGTH)));
-                    }
+                    let (x, y) = storeys::own_coordinates(&self.scene.storeys, (x, y));
                     return Ok(Typed::Number(if field.name == "x" { x } else { y }));
                 }
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;

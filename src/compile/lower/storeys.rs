@@ -56,7 +56,11 @@ pub(crate) fn is_on(who: Who, level: usize) -> Bool {
     Bool::Compare(Comparison::Equal, Box::new(number), Box::new(Num::Constant(level as f64)))
 }
 
-/// The coordinates of a place known beforehand on its own level, m.
-pub(crate) fn own_coordinates(storeys: &Storeys, p: Vec2) -> Vec2 {
-    storeys.local(p).map_or(p, |(_, own)| own)
+/// The coordinates of a place known beforehand on its own level: as written where that lies in the origin.
+pub(crate) fn own_coordinates(storeys: &Storeys, (x, y): (Number, Number)) -> (Number, Number) {
+    let local = storeys.local(Vec2::new(x.value, y.value));
+    match local.filter(|(island, _)| island.origin != Vec2::zeros()) {
+        Some((_, own)) => (Number::rounded(own.x, x.dimension), Number::rounded(own.y, y.dimension)),
+        None => (x, y),
+    }
 }

@@ -117,15 +117,14 @@ fn place_of(item: &SceneItem) -> Span {
     }
 }
 
-/// The height of a level, m: 0 where none is written.
-fn height(context: &mut Context<'_>, name: &Ident, fields: &[Field]) -> (f64, Span) {
-    let mut height = (0.0, name.span);
+/// The height of a level, m: 0 where none is written; none where it cannot be read.
+fn height(context: &mut Context<'_>, name: &Ident, fields: &[Field]) -> (Option<f64>, Span) {
+    let mut height = (Some(0.0), name.span);
     for field in fields {
         match (field.name.name.as_str(), &field.value) {
             ("height", Value::Plain(expr)) => {
-                if let Ok(number) = context.number_of(expr, Dimension::LENGTH, &Locals::default()) {
-                    height = (number.value, expr.span);
-                }
+                let number = context.number_of(expr, Dimension::LENGTH, &Locals::default());
+                height = (number.ok().map(|number| number.value), expr.span);
             }
             (known, _) => {
                 let error = unknown("field", known, field.name.span, Code::E0207, ["height"].into_iter());
@@ -136,9 +135,10 @@ fn height(context: &mut Context<'_>, name: &Ident, fields: &[Field]) -> (f64, Sp
     height
 }
 
-fn check_heights(context: &mut Context<'_>, heights: &[(f64, Span)]) -> bool {
+/// Whether all heights are known, and no two are the same.
+fn check_heights(context: &mut Context<'_>, heights: &[(Option<f64>, Span)]) -> bool {
     for (k, (height, span)) in heights.iter().enumerate() {
-        if let Some(first) = heights[..k].iter().position(|(other, _)| other == height) {
+        if let Some(first) = heights[..k].iter().position(|(other, _)| other == height && height.is_some()) {
             let [a, b] = [first, k].map(|k| context.levels.all[k].name.clone());
             let error = error!(E0412, *span, "`{a}` and `{b}` have the same height";
                 hint: "write the height in which the floor of each level lies: `height = 4 m`");
@@ -146,18 +146,19 @@ fn check_heights(context: &mut Context<'_>, heights: &[(f64, Span)]) -> bool {
             return false;
         }
     }
-    true
+    heights.iter().all(|(height, _)| height.is_some())
 }
 
 /// Moves the levels side by side: the lowest one stays where it is.
 fn lay_out(
     context: &mut Context<'_>,
-    heights: &[(f64, Span)],
+    heights: &[(Option<f64>, Span)],
     imported: &[std::ops::Range<usize>],
     doors: &mut [(usize, Door)],
 ) {
     let mut order: Vec<usize> = (0..heights.len()).collect();
-    order.sort_by(|a, b| heights[*a].0.total_cmp(&heights[*b].0));
+    let height_of = |level: usize| heights[level].0.unwrap_or_default();
+    order.sort_by(|a, b| height_of(*a).total_cmp(&height_of(*b)));
     let mut edge: Option<f64> = None;
     for level in order {
         let known = context.levels.all[level].clone();
@@ -181,7 +182,7 @@ fn lay_out(
         let way = Vec2::new(edge.map_or(0.0, |edge| (edge + APART - bounds.low.x).ceil()), 0.0);
         edge = Some(bounds.high.x + way.x);
         let bounds = Bounds { low: bounds.low + way, high: bounds.high + way };
-        let height = Some(heights[level].0);
+        let height = Some(height_of(level));
         context.scene.storeys.islands.push(Island { name: known.name, origin: way, bounds, height });
         let moved = |segment: Segment| Segment::new(segment.a + way, segment.b + way);
         for k in known.barriers.clone().chain(imported[level].clone()) {

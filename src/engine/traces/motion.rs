@@ -175,7 +175,7 @@ impl Motion {
         let at = |x: &i32, y: &i32| Vec2::new(f64::from(*x), f64::from(*y)) / 1000.0;
         jumps(periods.x, x - old_x)
             || jumps(periods.y, y - old_y)
-            || scenario.scene.storeys.part(at(old_x, old_y), at(&x, &y))
+            || scenario.scene.storeys.separate(at(old_x, old_y), at(&x, &y))
     }
 
     fn see_plan(&mut self, state: &State, (agent, slot): (usize, Slot), place: Millimetres) {

@@ -217,7 +217,7 @@ impl Drive {
 
     /// How near a barrier is to a line, m, as far as somebody may be off it in a look or two.
     pub(super) fn clearance(&self, closed: u32, line: &Segment, radius: f64) -> f64 {
-        if self.scenario.scene.storeys.part(line.a, line.b) {
+        if self.scenario.scene.storeys.separate(line.a, line.b) {
             return 0.0;
         }
         self.sight(closed).clearance((line.a, line.b), 0.5 * radius + ASIDE)
@@ -232,7 +232,7 @@ impl Drive {
         likely: Option<u32>,
     ) -> Option<u32> {
         // What is on another level is out of sight, though no barrier is in between.
-        if self.scenario.scene.storeys.part(line.0, line.1) {
+        if self.scenario.scene.storeys.separate(line.0, line.1) {
             return Some(u32::MAX);
         }
         self.sight(closed).blocker(line, 0.5 * radius, likely)

@@ -229,3 +229,12 @@ pub enum ExprKind {
     /// `e at end`: only directly inside `E(…)` and `Q(…)`
     At(Box<Expr>, Moment),
 }
+
+/// `name = value` of a `under` clause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Binding {
+    /// Parameter.
+    pub name: Ident,
+    /// Its value.
+    pub value: Expr,
+}

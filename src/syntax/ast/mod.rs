@@ -1,9 +1,11 @@
 //! Syntax trees of both languages. Every node knows its place; nothing is resolved yet.
 
 pub mod expression;
+pub mod field;
 pub mod process;
 pub mod property;
 pub mod scenario;
+pub mod scene;
 
 use crate::syntax::keywords::Place;
 use crate::syntax::source::Span;
@@ -22,18 +24,20 @@ pub struct Broken {
 }
 
 pub use expression::{
-    Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Moment, Quantifier, Quantity, Temporal, TemporalPair,
-    Text, UnaryOp, UnitExpr, UnitFactor,
+    Aggregate, BinaryOp, Binding, Bound, Expr, ExprKind, Ident, Moment, Quantifier, Quantity, Temporal,
+    TemporalPair, Text, UnaryOp, UnitExpr, UnitFactor,
 };
+pub use field::{Field, Leg, Route, ShapeExpr, Value};
 pub use process::{
     BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem,
     ProgramDecl, ShownDecl, SourceDecl, StateDecl, Timing, Transition, Update, VarDecl,
 };
 pub use property::{
-    Binding, Clauses, Constraint, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind,
-    Ranked, Values,
+    Clauses, Constraint, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind, Ranked,
+    Values,
 };
 pub use scenario::{
-    AgentsDecl, Field, GroupDecl, Item, KindDecl, Leg, LetDecl, MoveOption, MovesDecl, PathsDecl, Recorded,
-    Route, ScenarioFile, SceneItem, ShapeExpr, Value, Whom,
+    AgentsDecl, GroupDecl, Item, KindDecl, LetDecl, MoveOption, MovesDecl, PathsDecl, Recorded, ScenarioFile,
+    Whom,
 };
+pub use scene::SceneItem;

@@ -1,6 +1,6 @@
 //! Property files (`.bltl`).
 
-use super::{Broken, Expr, Ident, LetDecl};
+use super::{Binding, Broken, Expr, Ident, LetDecl};
 use crate::syntax::source::Span;
 
 /// A whole property file.
@@ -190,15 +190,6 @@ impl Values {
     pub fn is_single(&self) -> bool {
         matches!(self, Self::List(list) if list.len() == 1)
     }
-}
-
-/// `name = value` of a `under` clause.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Binding {
-    /// Parameter.
-    pub name: Ident,
-    /// Its value.
-    pub value: Expr,
 }
 
 /// A number of the distribution of traces.
