@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Stack of the thread that samples: deep formulas are walked recursively.
 const STACK: usize = 256 << 20;
 /// Between two looks for signals.
-const LOOK: Duration = Duration::from_millis(50);
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Options of a check.
 #[derive(FromPyObject)]

@@ -1,6 +1,7 @@
 //! A model that was parsed, with the files that it reads.
 
 use super::check::{self, Report, Settings};
+use super::driver::{self, Failure};
 use super::stage::Stage;
 use super::{raised, trial};
 use pyo3::exceptions::PyValueError;
@@ -9,6 +10,7 @@ use pyo3::types::PyDict;
 use smc::{Draft, Model as Parsed};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::PoisonError;
 
 /// Reads a file that a scenario names, from the first folder that has it.
 #[allow(clippy::disallowed_methods, reason = "a program of Python opens files, as the command line does")]
@@ -25,6 +27,8 @@ fn read(path: &str, folders: &[PathBuf]) -> Result<Vec<u8>, String> {
 #[pyclass(frozen, module = "smc._smc")]
 pub struct Model {
     pub(super) parsed: Parsed,
+    /// Why one of its drivers failed, once it has.
+    failure: Failure,
 }
 
 #[pymethods]
@@ -55,7 +59,17 @@ impl Model {
             draft = draft.allow_run(folder);
         }
         let parsed = py.detach(|| draft.parse());
-        Ok(Self { parsed: parsed.map_err(|found| raised(py, &found))? })
+        Ok(Self { parsed: parsed.map_err(|found| raised(py, &found))?, failure: Failure::default() })
+    }
+
+    /// The same model in which functions drive agents of a name, or without a name all.
+    fn driven(&self, py: Python<'_>, drivers: Vec<(Option<String>, Py<PyAny>)>) -> PyResult<Self> {
+        driver::driven(py, &self.parsed, drivers).map(|(parsed, failure)| Self { parsed, failure })
+    }
+
+    /// How a driver failed in the first trial in which one did; told once.
+    fn failure(&self) -> Option<String> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take().map(|(_, said)| said)
     }
 
     /// Its title; empty without one.

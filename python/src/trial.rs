@@ -87,7 +87,7 @@ impl Rows {
                     rows[lane].add(scenario, run.state(), lane);
                 }
                 if let Some(end) = end {
-                    rows[lane].ended = ended(scenario, end);
+                    rows[lane].ended = ended(scenario, end, (run.state(), lane));
                     run.clear(Mask::lane(lane));
                 }
             }

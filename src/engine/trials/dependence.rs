@@ -5,7 +5,7 @@ use crate::compile::Study;
 use crate::engine::trials::executor::{Cells, Executor, Job, Threads};
 use crate::logic::Invalid;
 use crate::trials::budget::Budget;
-use crate::trials::cell::{Cell, Item};
+use crate::trials::cell::{Cell, Item, Reading};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -86,23 +86,57 @@ impl Dependence {
     }
 }
 
+/// One trial of so many runs twice where drivers are not those of the kernel.
+const TWICE: u64 = 100;
+
 /// Threads whose outcomes are looked at.
 pub struct Watched<'a> {
     threads: &'a Threads,
     /// What the outcomes tell.
     pub dependence: Dependence,
+    is_twice: bool,
 }
 
 impl<'a> Watched<'a> {
     /// Of these threads.
     pub fn new(threads: &'a Threads) -> Self {
-        Self { threads, dependence: Dependence::default() }
+        Self { threads, dependence: Dependence::default(), is_twice: false }
+    }
+
+    /// One trial in a hundred runs twice: a driver that answers otherwise the second time says so itself, as a fault.
+    #[must_use]
+    pub fn twice(self, is_twice: bool) -> Self {
+        Self { is_twice, ..self }
+    }
+
+    /// Runs some trials of a round again. The row of one that is faulty now takes the place of the first.
+    fn again(
+        &self,
+        job: &Job<'_>,
+        items: &[Item],
+        budget: &Budget,
+        cells: &mut Cells,
+    ) -> Result<(), Invalid> {
+        let is_checked = |(_, item): &(usize, Item)| item.index.is_multiple_of(TWICE);
+        let (places, items): (Vec<usize>, Vec<Item>) =
+            items.iter().copied().enumerate().filter(is_checked).unzip();
+        let found = self.threads.run(job, &items, budget)?;
+        for (place, row) in places.into_iter().zip(found.rows()) {
+            if let Some(row) = row.filter(|row| row.iter().any(|cell| cell.reading == Reading::Faulty)) {
+                cells.put(place, row);
+            }
+        }
+        job.reuse(found);
+        Ok(())
     }
 }
 
 impl Executor for Watched<'_> {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let cells = self.threads.run(job, items, budget)?;
+        let mut cells = self.threads.run(job, items, budget)?;
+        if self.is_twice {
+            self.again(job, items, budget, &mut cells)?;
+        }
         for (item, row) in items.iter().zip(cells.rows()) {
             if let Some(row) = row {
                 self.dependence.see(job, *item, row);

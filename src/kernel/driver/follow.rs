@@ -261,7 +261,7 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
                 state.plans.ask(slot, Occasion::Left);
             }
         }
-        Plan::Keep | Plan::NoWay | Plan::There => {}
+        Plan::Keep | Plan::NoWay | Plan::There | Plan::Failed(_) => {}
     }
 }
 

@@ -6,6 +6,7 @@ pub(super) use trajectory::Piece;
 pub use trajectory::{Sample, Trajectory};
 
 use crate::base::geometry::Vec2;
+use crate::kernel::fault::Fault;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -33,6 +34,8 @@ pub enum Plan {
     /// Is moved along a trajectory by itself: no force moves it. Others feel it as a body with its velocity, which in
     /// contact does not yield. The trajectory begins where the agent is. It is one step; no leg ends before it does.
     Step(Arc<Trajectory>),
+    /// The driver failed, and the trial is unresolved; with a fault no trial of the model can be trusted.
+    Failed(Option<Fault>),
 }
 
 /// What a driver remembers of a person from plan to plan, in a trial.
