@@ -13,6 +13,7 @@ use smc::kernel::driver::{Driver, Limits, Memory, Occasion, Plan, Sample, Situat
 use smc::kernel::fault::Fault;
 use smc::model::{Goal, Parameter};
 use std::collections::BTreeMap;
+use std::fmt::Debug;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -24,6 +25,8 @@ const MOST_ANSWERS: usize = 1 << 20;
 const CORRECTION: f64 = 0.3;
 const LAG: f64 = 0.5;
 const LEAVE: f64 = 1.0;
+/// Most letters of an answer that are shown.
+const MOST_SHOWN: usize = 200;
 /// What a driver may answer.
 const ANSWERS: &str =
     "`straight`, `keep`, (`way`, points), (`follow`, rows of t, x, y, vx, vy) or (`stand`, seconds)";
@@ -177,9 +180,9 @@ impl Asked {
         }
         let name = &seen.scenario.agents[seen.agent.0 as usize].name;
         let trace = error.traceback(py).and_then(|trace| trace.format().ok()).unwrap_or_default();
-        let (trial, time) = (seen.key.index, seen.time);
+        let (trial, time) = (seen.key.index, (seen.time * 1e6).round() / 1e6);
         let said = format!(
-            "the driver of `{name}` failed in trial {trial} at {time:.6} s, which is unresolved:\n{trace}{error}"
+            "the driver of `{name}` failed in trial {trial} at {time} s, which is unresolved:\n{trace}{error}"
         );
         *first = Some((trial, said));
     }
@@ -227,12 +230,16 @@ impl Driver for Asked {
 
 /// The plan of an answer.
 fn plan_of(answer: &Bound<'_, PyAny>, speed: f64) -> PyResult<Plan> {
-    let wrong = |said: &str| PyValueError::new_err(format!("{said}; a driver answers {ANSWERS}"));
+    let wrong = |value: &dyn Debug, said: &str| {
+        let shown: String = format!("{value:?}").split_whitespace().collect::<Vec<_>>().join(" ");
+        let shown: String = shown.chars().take(MOST_SHOWN).collect();
+        PyValueError::new_err(format!("{shown} {said}; a driver answers {ANSWERS}"))
+    };
     let (word, value) = match answer.extract::<String>() {
         Ok(word) => (word, None),
         Err(_) => {
             let pair: Result<(String, Bound<'_, PyAny>), _> = answer.extract();
-            let (word, value) = pair.map_err(|_| wrong(&format!("{answer:?} is no plan")))?;
+            let (word, value) = pair.map_err(|_| wrong(answer, "is no plan"))?;
             (word, Some(value))
         }
     };
@@ -241,13 +248,13 @@ fn plan_of(answer: &Bound<'_, PyAny>, speed: f64) -> PyResult<Plan> {
         ("keep", None) => Ok(Plan::Keep),
         ("stand", Some(value)) => match value.extract::<f64>() {
             Ok(seconds) if seconds >= 0.0 => Ok(Plan::Stand(seconds)),
-            _ => Err(wrong(&format!("{value:?} is no time in s"))),
+            _ => Err(wrong(&value, "is no time in s")),
         },
         ("way", Some(value)) => match value.extract::<Vec<[f64; 2]>>() {
             Ok(points) if !points.is_empty() && points.as_flattened().iter().all(|v| v.is_finite()) => {
-                Ok(Plan::Way(points.into_iter().map(|[x, y]| Vec2::new(x, y)).collect()))
+                Ok(Plan::Through(points.into_iter().map(|[x, y]| Vec2::new(x, y)).collect()))
             }
-            _ => Err(wrong(&format!("{value:?} are no points"))),
+            _ => Err(wrong(&value, "are no points")),
         },
         ("follow", Some(value)) => {
             let sample = |[time, x, y, vx, vy]: [f64; 5]| Sample {
@@ -258,12 +265,12 @@ fn plan_of(answer: &Bound<'_, PyAny>, speed: f64) -> PyResult<Plan> {
             let rows = value.extract::<Vec<[f64; 5]>>().unwrap_or_default();
             let samples: Vec<Sample> = rows.into_iter().map(sample).collect();
             let Some(trajectory) = Trajectory::through(&samples) else {
-                return Err(wrong(&format!("{value:?} is no trajectory of two or more times from 0 s on")));
+                return Err(wrong(&value, "is no trajectory of two or more times from 0 s on"));
             };
             let limits = Limits { correction: CORRECTION * speed, lag: LAG, leave: LEAVE };
             Ok(Plan::Follow(Arc::new(trajectory), limits))
         }
-        _ => Err(wrong(&format!("`{word}` is no such plan"))),
+        _ => Err(wrong(answer, "is no plan")),
     }
 }
 

@@ -128,7 +128,7 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
             }
             course.next_ask.0[lane] = tick + steps_over(*seconds, drive.dt);
         }
-        Plan::Way(points) => {
+        Plan::Way(points) | Plan::Through(points) => {
             if let (Some(first), false) = (points.first(), has_arrived) {
                 course.way |= here;
                 course.set_goal(lane, *first, at);

@@ -29,6 +29,8 @@ pub enum Plan {
     /// line through it, once the next one is in sight; every 0.5 s points before one in sight are skipped, and a point out of
     /// sight is asked about. In sight is what a body of half the radius can go to straight.
     Way(Arc<[Vec2]>),
+    /// The same, but each of the points is passed in turn: none is skipped because a later one is in sight.
+    Through(Arc<[Vec2]>),
     /// Is driven along a trajectory by its driving velocity; all forces act on it.
     Follow(Arc<Trajectory>, Limits),
     /// Is moved along a trajectory by itself: no force moves it. Others feel it as a body with its velocity, which in
