@@ -46,26 +46,25 @@ def turns(count: int, **works) -> None:
 
 def pairs(program: str) -> None:
     """`check` of the corridor from Python and by the program: the same work on one thread."""
-    words = ["--max-trials", "2000", "-j", "1", "-q"]
+    words = ["--only", "3", "--max-trials", "2000", "-j", "1", "-q"]
 
     def command(seed: int) -> None:
         subprocess.run([program, "check", MODEL, PROPERTIES, "--seed", str(seed), *words], capture_output=True)
 
     model = smc.Model(MODEL)
-    turns(15, command=command, python=lambda seed: str(model.check(PROPERTIES, seed=seed, max_trials=2000, threads=1)))
+    turns(15, command=command, python=lambda seed: str(model.check(PROPERTIES, seed=seed, only="3", max_trials=2000, threads=1)))
 
 
 def driver() -> None:
-    """The same check in which a function drives the user, who is asked once a leg, and one without."""
+    """A check in which a function drives the user, who is asked once a leg and goes as without it, and one without."""
     model, asked = smc.Model(MODEL), []
 
     def mine(situation):
         asked.append(situation.occasion)
-        return ("way", [(8.5, 3.0)]) if situation.occasion == "begins" else "straight"
+        return "straight"
 
     text = "estimate P(G<=10 s (contact(user) => F<=1 s !contact(user))) by okamoto(epsilon = 0.02, delta = 0.05)"
-    kept = (lambda seed: model.check(text=text, seed=seed, threads=1))
-    turns(9, without=kept, driven=lambda seed: model.check(text=text, seed=seed, threads=1, driver={"user": mine}))
+    turns(15, without=lambda seed: model.check(text=text, seed=seed, threads=1), driven=lambda seed: model.check(text=text, seed=seed, threads=1, driver={"user": mine}))
     print({occasion: asked.count(occasion) for occasion in set(asked)})
 
 

@@ -108,35 +108,22 @@ impl<'a> Watched<'a> {
     pub fn twice(self, is_twice: bool) -> Self {
         Self { is_twice, ..self }
     }
-
-    /// Runs some trials of a round again. The row of one that is faulty now takes the place of the first.
-    fn again(
-        &self,
-        job: &Job<'_>,
-        items: &[Item],
-        budget: &Budget,
-        cells: &mut Cells,
-    ) -> Result<(), Invalid> {
-        let is_checked = |(_, item): &(usize, Item)| item.index.is_multiple_of(TWICE);
-        let (places, items): (Vec<usize>, Vec<Item>) =
-            items.iter().copied().enumerate().filter(is_checked).unzip();
-        let found = self.threads.run(job, &items, budget)?;
-        for (place, row) in places.into_iter().zip(found.rows()) {
-            if let Some(row) = row.filter(|row| row.iter().any(|cell| cell.reading == Reading::Faulty)) {
-                cells.put(place, row);
-            }
-        }
-        job.reuse(found);
-        Ok(())
-    }
 }
 
 impl Executor for Watched<'_> {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let mut cells = self.threads.run(job, items, budget)?;
-        if self.is_twice {
-            self.again(job, items, budget, &mut cells)?;
+        let is_checked = |place: &usize| self.is_twice && items[*place].index.is_multiple_of(TWICE);
+        let checked: Vec<usize> = (0..items.len()).filter(is_checked).collect();
+        // Beside the others, so that they fill lanes instead of batches of their own.
+        let again: Vec<Item> = checked.iter().map(|place| items[*place]).collect();
+        let mut cells = self.threads.run(job, &[items, &again].concat(), budget)?;
+        for (row, place) in (items.len()..).zip(checked) {
+            let row = cells.row(row).filter(|row| row.iter().any(|cell| cell.reading == Reading::Faulty));
+            if let Some(row) = row.map(<[Cell]>::to_vec) {
+                cells.put(place, &row);
+            }
         }
+        cells.truncate(items.len());
         for (item, row) in items.iter().zip(cells.rows()) {
             if let Some(row) = row {
                 self.dependence.see(job, *item, row);
