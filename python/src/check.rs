@@ -1,6 +1,7 @@
 //! Checks: sampling on a thread of its own, while this one looks for signals of Python, such as the stop button of a notebook.
 
 use super::raised;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use smc::engine::Watch;
 use smc::report::Format;
@@ -136,7 +137,8 @@ pub(super) fn check(
                 if let Some(progress) = &progress
                     && let Err(error) = progress.call1(py, (query, trials, of))
                 {
-                    failed = Some(error);
+                    // The stop button may find Python in this call.
+                    failed = Some(error).filter(|error| !error.is_instance_of::<PyKeyboardInterrupt>(py));
                     budget.interrupt();
                 }
             }
