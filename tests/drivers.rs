@@ -7,6 +7,7 @@ use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::driver::{Driver, Drivers, Limits, Memory, Occasion, Plan, Sample, Situation, Trajectory};
+use smc::kernel::fault::Fault;
 use smc::kernel::start::load;
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
 use smc::model::{
@@ -311,6 +312,60 @@ fn a_way_leads_around_a_wall_and_is_passed_in_sight_of_what_follows() {
             assert!((28..=32).contains(&occasions[1..].len()), "{} times in 16 s", occasions.len());
             assert!(occasions[1..].iter().all(|occasion| *occasion == Occasion::Left));
         }
+    }
+}
+
+#[test]
+fn points_are_passed_in_turn_though_a_later_one_is_in_sight() {
+    let detour: Arc<[Vec2]> = [p(1.0, 2.0), p(3.0, -2.0)].into();
+    for layout in [Layout::Trials, Layout::Agents] {
+        let nearest = |plan| {
+            let (mut run, _) = one(plan, layout);
+            let mut nearest = [f64::INFINITY; 2];
+            for _ in 0..400 {
+                run.step();
+                for (distance, point) in nearest.iter_mut().zip(detour.iter()) {
+                    *distance = distance.min((run.at(0) - point).norm());
+                }
+            }
+            assert!(run.at(0).x > 10.0, "at {}", run.at(0));
+            nearest
+        };
+        // Within two radii, and as far as it turns while it passes.
+        assert!(nearest(Plan::Through(detour.clone())).iter().all(|distance| *distance < 0.6));
+        let [first, _] = nearest(Plan::Way(detour.clone()));
+        assert!(first > 0.7, "a way is as short as what is in sight, and comes within {first} m");
+    }
+}
+
+#[test]
+fn a_driver_that_fails_ends_its_trial_and_no_other() {
+    let fault = Fault::Unsteady { agent: AgentId(0) };
+    for failed in [None, Some(fault)] {
+        #[derive(Debug)]
+        struct Fails(Option<Fault>);
+        impl Driver for Fails {
+            fn plan(&self, seen: &Situation<'_>, _: &mut Memory) -> Plan {
+                let is_wrong = seen.key.index == 1 && seen.occasion == Occasion::Leg;
+                if is_wrong { Plan::Failed(self.0) } else { Plan::Straight }
+            }
+        }
+        let drivers = Drivers::new(3).with([AgentId(0)], Arc::new(Fails(failed)));
+        let crowd = scenario(vec![agent(0, p(0.0, 0.0), 0.0)], &[]);
+        let mut run = Run::new(crowd, drivers, Layout::Trials).load(0, 0, None).load(1, 1, None);
+        let ended = (0..400).find(|_| {
+            run.step();
+            run.state.diverged.has(1)
+        });
+        let at = run.state.motion.x[0].0[1];
+        assert!(
+            ended.is_some() && (5.0..6.1).contains(&at),
+            "the driver fails where the first leg ends: {at}"
+        );
+        assert_eq!(run.state.undriven(1), Some(0));
+        assert_eq!(run.state.undriven(0), None);
+        assert!(!run.state.diverged.has(0) && !run.state.faulty.has(0));
+        assert_eq!((run.state.faulty.has(1), run.state.faults[1]), (failed.is_some(), failed));
     }
 }
 

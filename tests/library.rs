@@ -1,10 +1,13 @@
 //! The crate as a library: the same results as the program, errors as it shows them, and the states of a trial.
 
 use smc::engine::outcome::{Certified, Verdict};
+use smc::kernel::driver::{Driver, Memory, Plan, Situation};
+use smc::kernel::fault::Fault;
 use smc::report::Format;
 use smc::stats::Claim;
 use smc::{Draft, Model, Options};
 use std::process::Command;
+use std::sync::Arc;
 
 const SCENARIO: &str = "horizon = 6 s\nstep = 0.05 s\nparam n = 2\n\
     kind adult: sfm preset helbing2000 { noise = 0.1 m/s }\n\
@@ -126,4 +129,48 @@ fn results_print_and_serialize_as_the_command_line_does() {
     // An error of a parameter names it, and no option of the command line.
     let wrong = model.with("m", "3").unwrap_err().to_string();
     assert!(wrong.contains("parameter m:1:1") && !wrong.contains("--set"), "{wrong}");
+}
+
+/// Goes straight on, fails in every third trial, and is wrong in one.
+#[derive(Debug)]
+struct Sometimes {
+    wrong: u64,
+}
+
+impl Driver for Sometimes {
+    fn plan(&self, seen: &Situation<'_>, _: &mut Memory) -> Plan {
+        match seen.key.index {
+            index if index == self.wrong => Plan::Failed(Some(Fault::Unsteady { agent: seen.agent })),
+            index if index % 3 == 2 => Plan::Failed(None),
+            _ => Plan::Straight,
+        }
+    }
+}
+
+#[test]
+fn a_driver_from_outside_conditions_results_and_its_failures_are_unresolved() {
+    let query = "estimate P(F<=6 s (travelled(user) > 4 m)) by okamoto(epsilon = 0.2, delta = 0.1)";
+    let options = Options::default().seed(5).threads(1);
+    let model = Model::parse(SCENARIO).unwrap();
+    let driven = |wrong| model.clone().with_driver(Some("user"), Arc::new(Sometimes { wrong })).unwrap();
+    let report = driven(u64::MAX).check(query, &options).unwrap();
+    let result = &report.results()[0];
+    let counts = &result.consumed.counts;
+    let unresolved = counts.unresolved as f64 / counts.trials as f64;
+    assert!(unresolved > 0.3 && result.high - result.low > unresolved, "{} .. {}", result.low, result.high);
+    assert!(report.to_string().contains("the given drivers of user"), "{report}");
+    // A fault is an error of the model: no trial of it can be trusted.
+    let report = driven(0).check(query, &options).unwrap();
+    let said = report.to_string() + &report.warnings().to_string();
+    assert!(!report.is_satisfied() && said.contains("E0915"), "{said}");
+    for (name, wrong) in [("nobody", "there is no agent"), ("crowd[3]", "there is no agent")] {
+        let refused = model.clone().with_driver(Some(name), Arc::new(Sometimes { wrong: 0 })).unwrap_err();
+        assert!(refused.to_string().contains(wrong), "{refused}");
+    }
+    let storeys = "horizon = 6 s\nstep = 0.05 s\nkind adult: sfm preset helbing2000\n\
+        scene { level ground { region hall: rect (0, 0) .. (9, 9) } }\n\
+        agent user: adult { at = ground (1, 1); route = ground.hall }\n";
+    let refused =
+        Model::parse(storeys).unwrap().with_driver(None, Arc::new(Sometimes { wrong: 0 })).unwrap_err();
+    assert!(refused.to_string().contains("know no levels"), "{refused}");
 }

@@ -8,7 +8,7 @@
 Lengths are in m, times in s, speeds in m/s. Errors of texts are `smc.Diagnostics`, with the words of the program.
 """
 
-from ._smc import __version__
+from ._smc import Situation, __version__
 from .errors import Diagnostics
 from .model import Model
 from .report import Report, Result
@@ -23,4 +23,4 @@ def __getattr__(name: str):
         return Env
     raise AttributeError(f"module `smc` has no attribute `{name}`")
 
-__all__ = ["Diagnostics", "Env", "Model", "Report", "Result", "Trial", "__version__"]
+__all__ = ["Diagnostics", "Env", "Model", "Report", "Result", "Situation", "Trial", "__version__"]

@@ -1,10 +1,13 @@
 from collections.abc import Callable
 from typing import Any
 
+import numpy
+
 __version__: str
 
 class Model:
     title: str
+    levels: list[str]
     agents: list[str]
     warnings: str
     def __init__(
@@ -23,6 +26,8 @@ class Model:
         settings: dict[str, Any],
         progress: Callable[[str, int, int | None], None] | None,
     ) -> Report: ...
+    def driven(self, drivers: list[tuple[str | None, Callable[[Situation], Any]]]) -> Model: ...
+    def failure(self) -> str | None: ...
     def stage(self, agent: str, query: str | None, neighbours: int) -> Stage: ...
     def play(self, seed: int, indices: list[int]) -> str: ...
     def trials(self, seed: int, indices: list[int], threads: int | None) -> list[dict[str, Any]]: ...
@@ -33,6 +38,23 @@ class Report:
     def warnings(self) -> str: ...
     def is_satisfied(self) -> bool: ...
     def page(self) -> str: ...
+
+class Situation:
+    occasion: str
+    agent: str
+    seed: int
+    trial: int
+    time: float
+    dt: float
+    position: tuple[float, float]
+    velocity: tuple[float, float]
+    goal: tuple[float, float] | None
+    radius: float
+    speed: float
+    names: list[str]
+    others: numpy.ndarray
+    random: numpy.random.Generator
+    memory: Any
 
 class Stage:
     dt: float

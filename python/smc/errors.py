@@ -1,5 +1,6 @@
 """Errors of scenarios, property files and calls."""
 
+import ctypes
 from dataclasses import dataclass
 
 
@@ -48,3 +49,9 @@ class Diagnostics(ValueError):
     def __reduce__(self):
         found = [(one.code, one.file, one.line, one.column, one.message, one.hint) for one in self.errors]
         return (Diagnostics, (str(self), found))
+
+
+def raise_in(threads: list[int], error: type[BaseException]) -> None:
+    """Raises an exception in threads that do not come to an end; a call of C is ended when it comes back."""
+    for thread in threads:
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(error))

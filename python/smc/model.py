@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
@@ -12,6 +14,10 @@ from .progress import bar
 from .report import Report
 from .tracks import csv_of
 from .trial import Trial
+
+
+Driver = Callable[[_smc.Situation], str | tuple]
+"""Answers a situation with a plan. An object with a method `plan` is one as well."""
 
 
 class Model:
@@ -84,6 +90,11 @@ class Model:
         return self._inner.agents
 
     @property
+    def levels(self) -> list[str]:
+        """Names of the levels by height, and then of the stairs; empty where the scene has none."""
+        return self._inner.levels
+
+    @property
     def warnings(self) -> str:
         """Warnings about the scenario, as the program prints them."""
         return self._inner.warnings
@@ -99,12 +110,15 @@ class Model:
         only: str | Iterable[str] = (),
         evidence: bool = False,
         progress: bool | Callable[[str, int, int | None], None] = False,
+        driver: Driver | Mapping[str, Driver] | None = None,
     ) -> Report:
         """Answers the queries of property files, and of a `text` such as `"estimate P(F<=10 s (user in exit))"`.
 
         `max_trials` bounds the trials of a query (a million by default), `timeout` the time of the call in s. `threads` never
         change a result. `only` asks queries of these properties or numbers. With `evidence` results say how their evidence grew.
         `progress` shows a bar, or is called with the query, its trials so far and those that are expected (or None).
+        `driver` drives all agents, or `{"robot": mine}` those of a name or a list: a function that answers a `smc.Situation`
+        with `"straight"`, `"keep"`, `("way", points)`, `("follow", rows of t, x, y, vx, vy)` or `("stand", seconds)`.
 
         An interruption (Ctrl-C, or the stop button of a notebook) ends sampling: the report then has what was found so far,
         and `interrupted` is true. Raises `smc.Diagnostics` with all errors of the texts."""
@@ -124,28 +138,49 @@ class Model:
             "only": [only] if isinstance(only, str) else [str(one) for one in only],
             "evidence": evidence,
         }
-        if progress is True:
-            with bar() as told:
-                inner = self._inner.check(files, settings, told)
-        else:
-            inner = self._inner.check(files, settings, progress or None)
-        return Report(inner)
+        shown = bar() if progress is True else contextlib.nullcontext(progress or None)
+        with self._driven(driver) as inner, shown as told:
+            return Report(inner.check(files, settings, told))
 
-    def trial(self, index: int = 0, *, seed: int = 0) -> Trial:
-        """The trial of an index: the same that a check with this seed reads."""
-        return self.trials([index], seed=seed)[0]
+    @contextlib.contextmanager
+    def _driven(self, driver):
+        """The inner model with drivers; a failure of one becomes a warning."""
+        if driver is None:
+            yield self._inner
+            return
+        drivers = driver.items() if isinstance(driver, Mapping) else [(None, driver)]
+        functions = [(name, getattr(one, "plan", one)) for name, one in drivers]
+        for name, function in functions:
+            if not callable(function):
+                raise TypeError(f"a driver is a function of a situation, or has a method `plan` (got {function!r})")
+        inner = self._inner.driven(functions)
+        yield inner
+        failure = inner.failure()
+        if failure is not None:
+            warnings.warn(failure, RuntimeWarning, stacklevel=4)
+
+    def trial(self, index: int = 0, *, seed: int = 0, driver: Driver | Mapping[str, Driver] | None = None) -> Trial:
+        """The trial of an index: the same that a check with this seed and these drivers reads."""
+        return self.trials([index], seed=seed, driver=driver)[0]
 
     def play(self, indices: Iterable[int] = (0,), *, seed: int = 0) -> str:
         """Some trials as a page with a player."""
         return self._inner.play(seed, list(indices))
 
-    def trials(self, indices: Iterable[int], *, seed: int = 0, threads: int | None = None) -> list[Trial]:
+    def trials(
+        self,
+        indices: Iterable[int],
+        *,
+        seed: int = 0,
+        threads: int | None = None,
+        driver: Driver | Mapping[str, Driver] | None = None,
+    ) -> list[Trial]:
         """Several trials, run in parallel."""
         indices = list(indices)
         if any(index >= 1 << 48 for index in indices):
             raise ValueError(f"trials are numbered from 0 to {(1 << 48) - 1}")
-        found = self._inner.trials(seed, indices, threads)
-        return [Trial(self._inner, seed, one) for one in found]
+        with self._driven(driver) as inner:
+            return [Trial(inner, seed, one) for one in inner.trials(seed, indices, threads)]
 
     def __repr__(self) -> str:
         name, _, settings, *_ = self._parts

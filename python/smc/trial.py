@@ -27,6 +27,11 @@ class Trial:
         """Radii of the bodies, m: float64, (states, agents)."""
         self.present = found["present"]
         """Who is in the scene: bool, (states, agents)."""
+        self.levels = found.get("levels")
+        """The level or stairs of each agent, an index of `level_names`, −1 of who is not there: int32, (states, agents). None where
+        the scene has no levels. Positions are those of the level; on stairs x is the way from the foot."""
+        self.level_names = model.levels
+        """Names of the levels by height, and then of the stairs."""
         self.variables = found["variables"]
         """Variables of processes by name, each float64, (states,); a truth value is 0 or 1."""
         self.ended = found["ended"]
@@ -41,7 +46,7 @@ class Trial:
 
     def to_pandas(self):
         """A DataFrame with a row for each agent in each state in which it is there: `time`, `name`, `id`, `x`, `y`, `vx`, `vy`,
-        `radius`."""
+        `radius`, and `level` where the scene has levels."""
         import numpy
         import pandas
 
@@ -56,6 +61,8 @@ class Trial:
             columns[place] = self.positions[state, agent, k]
             columns[velocity] = self.velocities[state, agent, k]
         columns["radius"] = self.radii[state, agent]
+        if self.levels is not None:
+            columns["level"] = numpy.asarray(self.level_names, dtype=object)[self.levels[state, agent]]
         return pandas.DataFrame(columns)
 
     def to_pedpy(self):

@@ -1,18 +1,15 @@
-//! Checks: sampling on a thread of its own, while this one looks for signals of Python, such as the stop button of a notebook.
+//! Checks: an interruption ends sampling, and the report has what was found so far.
 
+use super::attend::{Halt, Ledger, attend};
 use super::raised;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use smc::engine::Watch;
 use smc::report::Format;
 use smc::{Diagnostics, Model, Options, Report as Found};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
-
-/// Stack of the thread that samples: deep formulas are walked recursively.
-const STACK: usize = 256 << 20;
-/// Between two looks for signals.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// Options of a check.
 #[derive(FromPyObject)]
@@ -107,50 +104,45 @@ fn borrowed(properties: &[(String, String)]) -> Vec<(&str, &str)> {
 /// Answers the queries of property files. An interruption by Python ends sampling, and the report says what was found so far.
 pub(super) fn check(
     py: Python<'_>,
-    model: &Model,
+    (model, ledger): (&Model, &Ledger),
     properties: Vec<(String, String)>,
     settings: &Settings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Report> {
     let options = settings.options();
     let budget = Arc::new(options.budget());
-    let (sender, told) = channel();
     let is_told = progress.is_some();
     let work = {
         let (model, options, properties) = (model.clone(), options.clone(), properties.clone());
         let budget = Arc::clone(&budget);
-        move || {
+        move |sender: &Sender<Told>| {
             let teller = Teller(is_told.then(|| sender.clone()));
             let found = model.check_files(&borrowed(&properties), &options, &budget, &teller);
             let _ = sender.send(Told::Done(Box::new(found)));
         }
     };
-    std::thread::Builder::new().stack_size(STACK).spawn(work)?;
-    let told = Mutex::new(told);
-    let next = || told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
     let mut failed = None;
-    let found = loop {
-        match py.detach(next) {
-            Ok(Told::Done(found)) => break *found,
-            Ok(Told::Consumed(query, trials, of)) => {
-                if let Some(progress) = &progress
-                    && let Err(error) = progress.call1(py, (query, trials, of))
-                {
-                    failed = Some(error);
-                    budget.interrupt();
-                }
+    let each = |told| match told {
+        Told::Done(found) => Some(*found),
+        Told::Consumed(query, trials, of) => {
+            if let Some(progress) = &progress
+                && let Err(error) = progress.call1(py, (query, trials, of))
+            {
+                // The stop button may find Python in this call.
+                failed = Some(error).filter(|error| !error.is_instance_of::<PyKeyboardInterrupt>(py));
+                budget.interrupt();
             }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(pyo3::exceptions::PyRuntimeError::new_err(
-                    "this is a bug in smc; please report it",
-                ));
-            }
-        }
-        if py.check_signals().is_err() {
-            budget.interrupt();
+            None
         }
     };
+    let halted = |is_interrupted| {
+        if is_interrupted {
+            budget.interrupt();
+        }
+        let late = || budget.is_over().then_some(Halt::Late);
+        if budget.is_interrupted() { Some(Halt::Interrupted) } else { late() }
+    };
+    let found = attend(py, ledger, work, each, halted)?;
     if let Some(error) = failed {
         return Err(error);
     }

@@ -3,14 +3,16 @@
 //! Everything that Python can write as well stands in `python/smc/`. Errors of texts become the exception `smc.Diagnostics` with
 //! the words of the program. Python may run other threads while something is computed here.
 
+mod attend;
 mod check;
+mod driver;
 mod model;
 mod stage;
 mod trial;
 
 use pyo3::prelude::*;
 use smc::Diagnostics;
-use smc::kernel::End;
+use smc::kernel::{End, State};
 use smc::model::Scenario;
 
 /// Errors of texts as an exception of Python.
@@ -37,7 +39,10 @@ fn raised(py: Python<'_>, found: &Diagnostics) -> PyErr {
 }
 
 /// Why a trial ended before its horizon, if it did.
-fn ended(scenario: &Scenario, end: End) -> Option<String> {
+fn ended(scenario: &Scenario, end: End, (state, lane): (&State, usize)) -> Option<String> {
+    if let Some(agent) = state.undriven(lane) {
+        return Some(format!("the driver of `{}` failed", scenario.agents[agent].name));
+    }
     match end {
         End::Horizon => None,
         End::Diverged => Some("diverged".to_owned()),
@@ -58,5 +63,6 @@ fn _smc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model::Model>()?;
     module.add_class::<check::Report>()?;
     module.add_class::<stage::Stage>()?;
+    module.add_class::<driver::Situation>()?;
     module.add_function(wrap_pyfunction!(command, module)?)
 }

@@ -1,6 +1,8 @@
 //! A model that was parsed, with the files that it reads.
 
+use super::attend::Ledger;
 use super::check::{self, Report, Settings};
+use super::driver;
 use super::stage::Stage;
 use super::{raised, trial};
 use pyo3::exceptions::PyValueError;
@@ -9,6 +11,7 @@ use pyo3::types::PyDict;
 use smc::{Draft, Model as Parsed};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::{Arc, PoisonError};
 
 /// Reads a file that a scenario names, from the first folder that has it.
 #[allow(clippy::disallowed_methods, reason = "a program of Python opens files, as the command line does")]
@@ -25,6 +28,8 @@ fn read(path: &str, folders: &[PathBuf]) -> Result<Vec<u8>, String> {
 #[pyclass(frozen, module = "smc._smc")]
 pub struct Model {
     pub(super) parsed: Parsed,
+    /// What its drivers do.
+    ledger: Arc<Ledger>,
 }
 
 #[pymethods]
@@ -55,7 +60,17 @@ impl Model {
             draft = draft.allow_run(folder);
         }
         let parsed = py.detach(|| draft.parse());
-        Ok(Self { parsed: parsed.map_err(|found| raised(py, &found))? })
+        Ok(Self { parsed: parsed.map_err(|found| raised(py, &found))?, ledger: Arc::default() })
+    }
+
+    /// The same model in which functions drive agents of a name, or without a name all.
+    fn driven(&self, py: Python<'_>, drivers: Vec<(Option<String>, Py<PyAny>)>) -> PyResult<Self> {
+        driver::driven(py, &self.parsed, drivers).map(|(parsed, ledger)| Self { parsed, ledger })
+    }
+
+    /// How a driver failed in the first trial in which one did; told once.
+    fn failure(&self) -> Option<String> {
+        self.ledger.failure.lock().unwrap_or_else(PoisonError::into_inner).take().map(|(_, said)| said)
     }
 
     /// Its title; empty without one.
@@ -68,6 +83,12 @@ impl Model {
     #[getter]
     fn agents(&self) -> Vec<String> {
         self.parsed.scenario().agents.iter().map(|agent| agent.name.clone()).collect()
+    }
+
+    /// The names of its levels by height, and then of its stairs.
+    #[getter]
+    fn levels(&self) -> Vec<String> {
+        self.parsed.scenario().scene.storeys.islands.iter().map(|island| island.name.clone()).collect()
     }
 
     /// Warnings, as the program prints them.
@@ -85,7 +106,7 @@ impl Model {
         settings: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Report> {
-        check::check(py, &self.parsed, properties, &settings, progress)
+        check::check(py, (&self.parsed, &self.ledger), properties, &settings, progress)
     }
 
     /// A stage on which an agent is driven, and a query is asked of each episode.
@@ -109,6 +130,6 @@ impl Model {
         if threads == Some(0) {
             return Err(PyValueError::new_err("threads must be at least 1"));
         }
-        trial::trials(py, &self.parsed, (seed, &indices), threads)
+        trial::trials(py, (&self.parsed, &self.ledger), (seed, indices), threads)
     }
 }

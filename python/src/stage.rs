@@ -62,7 +62,7 @@ impl Stage {
         let rows = PyArray1::from_vec(py, rows).reshape([1 + self.neighbours, 5])?;
         let time = self.scenario.clock.seconds(smc::base::tick::Tick(state.ticks[0]));
         let is_over = episode.end() == Some(End::Horizon);
-        let ended = episode.end().and_then(|end| ended(&self.scenario, end));
+        let ended = episode.end().and_then(|end| ended(&self.scenario, end, (state, 0)));
         let is_here = own.is_some();
         Ok((rows, time, (is_here, is_over), ended, episode.worth()))
     }

@@ -14,6 +14,7 @@ SHOWN = {
     "corridor": ["satisfied", "chosen", "<iframe sandbox="],
     "sweep": ["density", "image/png"],
     "controller": ["certified: P(safe) in", "distance(robot, a) > 0.7 m"],
+    "driver": ["given: the given drivers of robot", "<iframe sandbox="],
     "recording": ["people, mean speed", "P(G<=4.8 s", "simulated: "],
 }
 

@@ -124,3 +124,36 @@ def test_wrong_types_are_exceptions(small):
         small.check(text="estimate P(F<=1 s contact(user))", seed=-3)
     with pytest.raises(smc.Diagnostics):
         smc.Model.parse("")
+
+
+LEVELS = """
+horizon = 20 s
+step = 0.05 s
+scene {
+  level ground { region hall: rect (0, 0) .. (9, 9); line foot: (9, 2) -- (9, 4) }
+  level first { height = 3 m; region hall: rect (0, 0) .. (9, 9); line head: (0, 4) -- (0, 2) }
+  stairs s: ground.foot -- first.head { width = 2 m; run = 5 m }
+}
+kind adult: sfm preset helbing2000
+agent user: adult { at = ground (6, 3); route = first (6, 3) }
+"""
+
+
+def test_levels_are_an_array_and_positions_are_theirs(tmp_path, program):
+    model = smc.Model.parse(LEVELS)
+    trial = model.trial()
+    assert trial.level_names == ["ground", "first", "s"] and trial.levels.dtype == numpy.int32
+    assert [int(level) for level in dict.fromkeys(trial.levels[:, 0])] == [0, 2, 1]
+    (tmp_path / "a.scn").write_text(LEVELS)
+    rows = [line.split(",") for line in program("simulate", "a.scn", cwd=tmp_path).stdout.splitlines()]
+    place = {name: k for k, name in enumerate(rows[0])}
+    for row, level, at in zip(rows[1:], trial.levels[:, 0], trial.positions[:, 0]):
+        assert (row[place["level"]], float(row[place["x"]]), float(row[place["y"]])) == (trial.level_names[level], *at)
+    pytest.importorskip("pandas")
+    assert list(dict.fromkeys(trial.to_pandas()["level"])) == ["ground", "s", "first"]
+
+
+def test_words_that_this_program_does_not_know_are_errors_with_a_place():
+    with pytest.raises(smc.Diagnostics) as caught:
+        smc.Model.parse("horizon = 5 s\nstep = 0.05 s\nescalators = 3\n")
+    assert caught.value.errors[0].line == 3 and caught.value.hint

@@ -74,6 +74,11 @@ impl Flaw {
                 origins.program,
                 "draw all random numbers from `{seed}`, and read neither the clock nor what another trial wrote",
             ),
+            process::Fault::Unsteady { .. } => (
+                Code::E0915,
+                None,
+                "let answers depend on the situation alone, and draw random numbers from the generator that it has",
+            ),
             process::Fault::Unstarted { .. } => {
                 (Code::E0916, origins.program, "write the name of a program that can be run, or a path to it")
             }

@@ -1,7 +1,7 @@
 //! Errors of a model that show only while it runs.
 
 use crate::base::lanes::{LANES, Mask};
-use crate::model::{Domain, Parameter, Processes, Scenario};
+use crate::model::{AgentId, Domain, Parameter, Processes, Scenario};
 
 /// What a process did that it must not do. The numbers are those of the process, command or variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,11 @@ pub enum Fault {
     },
     /// A program elsewhere gives something else when it runs again.
     Unrepeated,
+    /// A driver answers otherwise when it is asked again.
+    Unsteady {
+        /// The agent that it drives.
+        agent: AgentId,
+    },
     /// A program elsewhere cannot be started.
     Unstarted {
         /// What the system says.
@@ -139,6 +144,10 @@ impl Fault {
             }
             Self::Unrepeated => {
                 "the program gave another trace when it ran again with the same words".to_owned()
+            }
+            Self::Unsteady { agent } => {
+                let name = scenario.agents.get(agent.0 as usize).map_or("", |agent| agent.name.as_str());
+                format!("the driver of `{name}` gave another answer when the trial ran again")
             }
             Self::Unstarted { why } => {
                 let call = processes.outside.as_ref().map_or(String::new(), |outside| outside.told());

@@ -2,7 +2,7 @@
 //! and as fast, turned as the portal turns. On stairs the driving speed is that of their table.
 //!
 //! Nobody is felt across a line, so a landing must have room for the body; else one stands at the line until there is. Two who
-//! want to pass each other across one line both may.
+//! are in each other's way across one line, and in nobody else's, both pass.
 
 use super::driver;
 use super::plan::Occasion;
@@ -31,6 +31,15 @@ struct Crossing {
     share: f64,
     /// How far behind it, m.
     beyond: f64,
+}
+
+/// Whether there is room beyond a line.
+#[derive(Clone, Copy)]
+enum Room {
+    Free,
+    /// But for the one of a crossing in the other direction.
+    Against(usize),
+    Taken,
 }
 
 impl Stairwells {
@@ -90,42 +99,31 @@ impl Stairwells {
                 let slot = Slot { block, lane };
                 let steps = (Vec2::new(x[block].0[lane], y[block].0[lane]), state.position(slot));
                 for &portal in &self.out[island] {
-                    if let Some((share, beyond)) = crossed(&self.storeys.portals[portal], steps) {
+                    let is_flight = self.storeys.islands[island].height.is_none();
+                    if let Some((share, beyond)) = crossed(&self.storeys.portals[portal], is_flight, steps) {
                         crossings.push(Crossing { slot, portal, share, beyond });
                         break;
                     }
                 }
             }
         }
-        let mut carried = false;
-        for one in &crossings {
-            let portal = &self.storeys.portals[one.portal];
-            let radius = one.slot.of(&state.bodies[Parameter::Radius]);
-            let at = landing(portal, one, radius);
-            let velocity = state.velocity(one.slot);
-            let (to, v) = if self.has_room(state, &crossings, one, at, radius) {
-                carried = true;
-                let speed = &mut state.bodies[Parameter::Speed][one.slot.block].0[one.slot.lane];
-                *speed /= one.slot.of(&state.whereabouts.share);
-                self.put(program, state, one.slot, portal.islands[1] as usize, portal.speed);
-                state.whereabouts.slow(&mut state.bodies, one.slot);
-                state.driving.move_on(one.slot);
-                if program.drive.has_driver(state.layout.agent_of(one.slot)) {
-                    state.plans.ask(one.slot, Occasion::Storey);
-                }
-                (at, portal.turned(velocity))
-            } else {
-                let onto = velocity.dot(&portal.across);
-                let back = if onto > 0.0 { onto } else { 0.0 };
-                let before = state.position(one.slot) - portal.across * (one.beyond + HAIR);
-                (before, velocity - portal.across * back)
+        let (mut done, mut carried) = (vec![false; crossings.len()], false);
+        for k in 0..crossings.len() {
+            if done[k] {
+                continue;
+            }
+            let go_on: &[usize] = match self.room(state, (&crossings, &done), k) {
+                Room::Free => &[k],
+                Room::Against(other) if self.passes(state, (&crossings, &done), (k, other)) => &[k, other],
+                Room::Against(_) | Room::Taken => &[],
             };
-            let Slot { block, lane } = one.slot;
-            let motion = &mut state.motion;
-            for (field, value) in
-                [(&mut motion.x, to.x), (&mut motion.y, to.y), (&mut motion.vx, v.x), (&mut motion.vy, v.y)]
-            {
-                field[block].0[lane] = value;
+            if go_on.is_empty() {
+                self.hold(state, &crossings[k]);
+            }
+            done[k] = true;
+            for &one in go_on {
+                self.carry_on(program, state, &crossings[one]);
+                (done[one], carried) = (true, true);
             }
         }
         if carried {
@@ -133,50 +131,89 @@ impl Stairwells {
         }
     }
 
-    /// Whether nobody stands where somebody would go on, but who wants to pass in the other direction.
-    fn has_room(&self, state: &State, all: &[Crossing], one: &Crossing, at: Vec2, radius: f64) -> bool {
+    /// Puts somebody at the landing.
+    fn carry_on(&self, program: &Program, state: &mut State, one: &Crossing) {
+        let portal = &self.storeys.portals[one.portal];
+        let (at, velocity) = (self.landing(state, one), portal.turned(state.velocity(one.slot)));
+        let speed = &mut state.bodies[Parameter::Speed][one.slot.block].0[one.slot.lane];
+        *speed /= one.slot.of(&state.whereabouts.share);
+        self.put(program, state, one.slot, portal.islands[1] as usize, portal.speed);
+        state.whereabouts.slow(&mut state.bodies, one.slot);
+        state.driving.move_on(one.slot);
+        if program.drive.has_driver(state.layout.agent_of(one.slot)) {
+            state.plans.ask(one.slot, Occasion::Storey);
+        }
+        state.motion.put(one.slot, at, velocity);
+    }
+
+    /// Puts somebody back before the line, at rest across it.
+    fn hold(&self, state: &mut State, one: &Crossing) {
+        let across = self.storeys.portals[one.portal].across;
+        let velocity = state.velocity(one.slot);
+        let onto = velocity.dot(&across);
+        let back = if onto > 0.0 { onto } else { 0.0 };
+        let before = state.position(one.slot) - across * (one.beyond + HAIR);
+        state.motion.put(one.slot, before, velocity - across * back);
+    }
+
+    /// Whether the one in somebody's way is free to pass, but for that one.
+    fn passes(&self, state: &State, crossings: (&[Crossing], &[bool]), (one, other): (usize, usize)) -> bool {
+        match self.room(state, crossings, other) {
+            Room::Free => true,
+            Room::Against(there) => there == one,
+            Room::Taken => false,
+        }
+    }
+
+    /// Whether there is room where somebody would go on.
+    fn room(&self, state: &State, (all, done): (&[Crossing], &[bool]), k: usize) -> Room {
+        let one = &all[k];
+        let (at, radius) = (self.landing(state, one), one.slot.of(&state.bodies[Parameter::Radius]));
         let island = f64::from(self.storeys.portals[one.portal].islands[1]);
-        let back = Storeys::reverse(one.portal);
         let slots = match state.layout {
             Layout::Trials => Mask::lane(one.slot.lane),
             Layout::Agents => Mask::ALL,
         };
+        let mut found = Room::Free;
         for (block, there) in state.whereabouts.island.iter().enumerate() {
             let near = there.compare(Lanes::splat(island), |a, b| a == b) & slots & state.present[block];
             for lane in near.iter() {
                 let slot = Slot { block, lane };
                 let touch = radius + slot.of(&state.bodies[Parameter::Radius]);
-                let passes = || {
-                    all.iter().any(|other| {
-                        (other.slot.block, other.slot.lane) == (block, lane) && other.portal == back
-                    })
-                };
-                if (state.position(slot) - at).norm_squared() < touch * touch && !passes() {
-                    return false;
+                if (state.position(slot) - at).norm_squared() < touch * touch {
+                    let back = Storeys::reverse(one.portal);
+                    let is_there = |other: &Crossing| other.slot == slot && other.portal == back;
+                    let other = all.iter().position(is_there).filter(|other| !done[*other]);
+                    found = match (found, other) {
+                        (Room::Free, Some(other)) => Room::Against(other),
+                        _ => return Room::Taken,
+                    };
                 }
             }
         }
-        true
+        found
+    }
+
+    /// Where somebody goes on, a radius from the sides of the stairs.
+    fn landing(&self, state: &State, one: &Crossing) -> Vec2 {
+        let portal = &self.storeys.portals[one.portal];
+        let along = portal.landing.b - portal.landing.a;
+        let least = (one.slot.of(&state.bodies[Parameter::Radius]) / along.norm()).min(0.5);
+        let share = one.share.clamp(least, 1.0 - least);
+        portal.landing.a + along * share + portal.onward * one.beyond
     }
 }
 
-/// Where and how far somebody has crossed the line of a portal.
-fn crossed(portal: &Portal, (from, to): (Vec2, Vec2)) -> Option<(f64, f64)> {
+/// Where and how far somebody has crossed the line of a portal. Beyond the end of a flight there is nothing, so whoever a crush
+/// has thrown there has crossed its line.
+fn crossed(portal: &Portal, is_flight: bool, (from, to): (Vec2, Vec2)) -> Option<(f64, f64)> {
     let beyond = (to - portal.line.a).dot(&portal.across);
     let before = (from - portal.line.a).dot(&portal.across);
-    if beyond <= 0.0 || before > 0.0 {
+    if beyond <= 0.0 || before > 0.0 && !is_flight {
         return None;
     }
-    let at = from + (to - from) * (before / (before - beyond));
+    let at = if before > 0.0 { to } else { from + (to - from) * (before / (before - beyond)) };
     let along = portal.line.b - portal.line.a;
     let share = (at - portal.line.a).dot(&along) / along.norm_squared();
-    (0.0..=1.0).contains(&share).then_some((share, beyond))
-}
-
-/// Where somebody goes on, a radius from the sides of the stairs.
-fn landing(portal: &Portal, one: &Crossing, radius: f64) -> Vec2 {
-    let along = portal.landing.b - portal.landing.a;
-    let least = (radius / along.norm()).min(0.5);
-    let share = one.share.clamp(least, 1.0 - least);
-    portal.landing.a + along * share + portal.onward * one.beyond
+    (is_flight || (0.0..=1.0).contains(&share)).then_some((share, beyond))
 }

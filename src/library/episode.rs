@@ -3,14 +3,13 @@
 use super::diagnostics::Diagnostics;
 use super::model::Model;
 use super::options::Options;
+use super::own::refuse;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::engine::PreparedWorld;
 use crate::kernel::{Address, End, Run, State};
 use crate::model::AgentId;
-use crate::syntax::codes::Code;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::batch::Monitors;
 use crate::trials::cell::Reading;
 use crate::trials::columns::StepColumns;
@@ -36,24 +35,11 @@ impl Model {
     /// # Errors
     /// Errors of the query; where there is no such agent, or it moves by plans or steps; and in continuous time.
     pub fn stage(&self, agent: &str, query: Option<&str>, seed: u64) -> Result<Stage, Diagnostics> {
-        let refuse = |said: String, hint: String| {
-            let error = Diagnostic::placeless(Code::E0705, said).hint(hint);
-            Err(Diagnostics::new(vec![error], Vec::new()))
+        let agents = self.drivable(Some(agent))?;
+        let [agent] = agents[..] else {
+            let hint = format!("name one of them: `{agent}[1]`");
+            return refuse(format!("`{agent}` are {} agents, and one is driven", agents.len()), hint);
         };
-        let scenario = self.scenario();
-        let Some(number) = scenario.agents.iter().position(|one| one.name == agent) else {
-            let names: Vec<&str> = scenario.agents.iter().take(8).map(|one| one.name.as_str()).collect();
-            let hint = match names.as_slice() {
-                [] => "the scenario has no agents".to_owned(),
-                names => format!("the agents are {}", names.join(", ")),
-            };
-            return refuse(format!("there is no agent `{agent}`"), hint);
-        };
-        let body = &scenario.agents[number].body;
-        if body.planner.is_some() || body.stepper.is_some() || scenario.clock.is_jumps() {
-            let hint = "declare it as `sfm` or `cfs`, in a scenario with a step".to_owned();
-            return refuse(format!("`{agent}` follows plans of its own, and cannot be driven"), hint);
-        }
         let options = Options::default().seed(seed);
         let properties: Vec<(&str, &str)> = query.iter().map(|text| ("episode.bltl", *text)).collect();
         let (prepared, _) = self.ask(&properties, &options, &Arc::new(options.budget()), |asked| {
@@ -66,7 +52,7 @@ impl Model {
             Ok(PreparedWorld::of(asked.study, world, seed, asked.call.drivers).map(|one| (one, column)))
         })?;
         match prepared {
-            Some((prepared, column)) => Ok(Stage { prepared, agent: AgentId(number as u32), column }),
+            Some((prepared, column)) => Ok(Stage { prepared, agent, column }),
             None => {
                 refuse("the query asks nothing of a trial".to_owned(), "write `check P(…) >= 0.9`".to_owned())
             }

@@ -11,6 +11,7 @@ mod laws;
 mod model;
 mod models;
 mod options;
+mod own;
 mod paths;
 pub mod program;
 mod refusal;

@@ -3,6 +3,7 @@
 use super::diagnostics::Diagnostics;
 use super::front::{Folder, Inputs, Names, load};
 use super::options::Options;
+use super::own::OwnDrivers;
 use super::program::{Programs, playing, unallowed};
 use super::refusal::{of_model, refusal, refusals};
 use super::report::Report;
@@ -13,9 +14,11 @@ use crate::base::random::TrialKey;
 use crate::compile::{Study, matches};
 use crate::engine::outcome::{CallResult, Failure};
 use crate::engine::traces::{Traces, simulated, traces};
-use crate::engine::{Budget, Call, CommandLine, Fault, Nobody, Watch, no_start, placeable, run};
+use crate::engine::{
+    Budget, Call, CommandLine, Executor, Fault, Nobody, Watch, Watched, no_start, placeable, run,
+};
 use crate::gait;
-use crate::kernel::driver::{Drivers, MakeDrivers};
+use crate::kernel::driver::Drivers;
 use crate::kernel::{Address, Program, start};
 use crate::model::Scenario;
 use crate::report::html::{MOST_NUMBERS, Page, page};
@@ -127,7 +130,7 @@ impl Draft {
         placeable(last).map_err(|fault| Diagnostics::new(vec![refusal(&fault)], sources))?;
         let programs = self.programs(&study, || false).ok().flatten();
         let scenario = last.scenario.clone();
-        Ok(Model { draft: self, scenario, warnings, drivers: None, programs })
+        Ok(Model { draft: self, scenario, warnings, drivers: None, own: OwnDrivers::default(), programs })
     }
 
     /// Compiles the scenario, perhaps with property files.
@@ -192,6 +195,8 @@ pub struct Model {
     warnings: Diagnostics,
     /// None where all agents find their way.
     drivers: Option<Arc<MakeOwn>>,
+    /// Drivers that some agents have in the place of those.
+    pub(super) own: OwnDrivers,
     /// Who runs single trials of a program.
     programs: Option<Arc<Programs>>,
 }
@@ -220,7 +225,7 @@ impl Model {
     /// Where there is no such parameter, or it takes no such value.
     pub fn with(&self, parameter: &str, value: &str) -> Result<Self, Diagnostics> {
         let model = self.draft.clone().set(parameter, value).parse()?;
-        Ok(Self { drivers: self.drivers.clone(), ..model })
+        Ok(Self { drivers: self.drivers.clone(), own: self.own.clone(), ..model })
     }
 
     /// Gives agents drivers of their own: `make` is called with the scenario and the seed of a run, and says which agents
@@ -265,8 +270,15 @@ impl Model {
     ) -> Result<Report, Diagnostics> {
         let threads = options.executor();
         self.ask(properties, options, budget, |asked| {
-            let Asked { study, call, inputs, prints } = asked;
-            let mut run = run(study, call, &threads?, budget, watch)?;
+            let Asked { study, call, inputs, prints, programs } = asked;
+            let threads = threads?;
+            // Trials of the kernel are independent; others are watched.
+            let watched = Watched::new(&threads).twice(!self.own.is_empty());
+            let is_watched = programs.is_some() || !self.own.is_empty();
+            let own: &dyn Executor = if is_watched { &watched } else { &threads };
+            let mut run = run(study, call, own, budget, watch)?;
+            run.warnings.extend(watched.dependence.warnings(study));
+            run.warnings.extend(programs.iter().flat_map(|programs| programs.doubts()));
             let broken = match &run.failure {
                 Some(Failure::Model(flaw)) => Some(of_model(flaw)),
                 _ => None,
@@ -325,12 +337,14 @@ impl Model {
         let end = Arc::clone(budget);
         let programs =
             self.draft.programs(&study, move || end.is_late()).map_err(|error| wrong(vec![error]))?;
+        self.own.condition(&mut study.queries);
+        let (make, own, played) = (self.drivers.clone(), self.own.clone(), programs.clone());
         let find = move |scenario: &Scenario, seed: u64| {
-            playing(gait::drivers(&ways, scenario, seed), programs.as_ref())
-        };
-        let drivers: &MakeDrivers = match &self.drivers {
-            Some(make) => &**make,
-            None => &find,
+            let drivers = match &make {
+                Some(make) => make(scenario, seed),
+                None => playing(gait::drivers(&ways, scenario, seed), played.as_ref()),
+            };
+            own.join(drivers, scenario)
         };
         let call = Call {
             seed: options.seed,
@@ -340,9 +354,10 @@ impl Model {
             line: self.line(properties),
             only,
             place: &place,
-            drivers,
+            drivers: &find,
         };
-        let asked = Asked { study: &study, call: &call, inputs: &diagnostics, prints: &prints };
+        let programs = programs.as_deref();
+        let asked = Asked { study: &study, call: &call, inputs: &diagnostics, prints: &prints, programs };
         let done = work(&asked).map_err(|fault| wrong(refusals(&fault)))?;
         Ok((done, sources))
     }
@@ -381,7 +396,7 @@ impl Model {
             Some(make) => make(&self.scenario, seed),
             None => playing(gait::drivers(&Ways::default(), &self.scenario, seed), self.programs.as_ref()),
         };
-        Program::driven(self.scenario.clone(), drivers)
+        Program::driven(self.scenario.clone(), self.own.join(drivers, &self.scenario))
     }
 
     /// Why a trial cannot start.
@@ -410,6 +425,7 @@ pub(super) struct Asked<'a> {
     /// Warnings about the texts and about ways.
     inputs: &'a [Diagnostic],
     prints: &'a [(String, Fingerprint)],
+    programs: Option<&'a Programs>,
 }
 
 /// The name of a property text in messages and replay lines.

@@ -81,7 +81,9 @@ pub struct Budget {
     stopped: OnceLock<Instant>,
 }
 
-/// Seconds after the end that explanations may still take: at least, at most, and as a share of the time that was given.
+/// Seconds after the end that explanations may still take: after an interruption, at least, at most, and as a share of the time
+/// that was given.
+const PROMPT_GRACE: f64 = 0.1;
 const LEAST_GRACE: f64 = 0.02;
 const MOST_GRACE: f64 = 1.0;
 const SHARE_OF_GRACE: f64 = 0.25;
@@ -191,9 +193,10 @@ impl Budget {
 
     /// Seconds that explanations may still take after the end.
     pub fn grace(&self) -> f64 {
-        self.deadline.map_or(MOST_GRACE, |deadline| {
+        let most = if self.is_interrupted() { PROMPT_GRACE } else { MOST_GRACE };
+        self.deadline.map_or(most, |deadline| {
             let given = deadline.saturating_duration_since(self.started).as_secs_f64();
-            (SHARE_OF_GRACE * given).clamp(LEAST_GRACE, MOST_GRACE)
+            (SHARE_OF_GRACE * given).clamp(LEAST_GRACE, most)
         })
     }
 }

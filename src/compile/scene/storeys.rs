@@ -22,6 +22,10 @@ const IN_WALL: f64 = 0.05;
 const NARROWEST: f64 = 0.4;
 /// A line faces another one if at least this share of the way to it leads straight ahead.
 const FACES: f64 = 0.3;
+/// The share of a line at either end that another one may touch.
+const ENDS: f64 = 0.1;
+/// How far behind its line the rails around stairs end, m.
+const RAIL: f64 = 1.0;
 
 /// The shares up and down, for a run and a rise, m.
 type Table = fn(f64, f64) -> [f64; 2];
@@ -271,8 +275,13 @@ fn line_of(context: &mut Context<'_>, name: &Ident, end: &Expr) -> Lowered<(u32,
         let said = format!("the line of the stairs `{}` lies in {}", name.name, barrier.phrase());
         return context.report(error!(E0412, end.span, "{said}"; hint: "leave the wall open there"));
     }
-    let taken =
-        context.scene.storeys.portals.iter().find(|portal| portal.line.distance_to(&segment) < IN_WALL);
+    // Flights side by side share an end of their lines.
+    let inner = |line: &Segment| {
+        let off = (line.b - line.a) * ENDS;
+        Segment::new(line.a + off, line.b - off)
+    };
+    let meets = |portal: &&Portal| inner(&portal.line).distance_to(&inner(&segment)) < IN_WALL;
+    let taken = context.scene.storeys.portals.iter().find(meets);
     if let Some(portal) = taken {
         let strip = portal.islands.iter().find_map(|k| {
             let island = &context.scene.storeys.islands[*k as usize];
@@ -292,6 +301,13 @@ fn upward(line: &Segment, way: Vec2) -> Vec2 {
     let ahead = way.dot(&right);
     // Else the first end lies on the left of who goes up.
     if ahead < -FACES * way.norm() { -right } else { right }
+}
+
+/// The rails around stairs on a level, so that its ways do not lead through: from the ends of a line, across it, and behind.
+fn rail(line: &Segment, across: Vec2) -> [Segment; 3] {
+    let behind = |p: Vec2| p + across * RAIL;
+    let (a, b) = (behind(line.a), behind(line.b));
+    [Segment::new(line.a, a), Segment::new(a, b), Segment::new(b, line.b)]
 }
 
 /// `stairs s: ground.foot -- first.head { … }`
@@ -370,7 +386,9 @@ fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[
         height: None,
     });
     scene.storeys.portals.extend(portals);
-    scene.barriers.push(Barrier { name: name.name.clone(), obstacle: Obstacle::Wall(sides.to_vec()) });
+    let rails = [(&below, into), (&above, -out)].map(|(line, across)| rail(line, across));
+    let pieces = sides.into_iter().chain(rails.into_iter().flatten()).collect();
+    scene.barriers.push(Barrier { name: name.name.clone(), obstacle: Obstacle::Wall(pieces) });
     if let Some(Meaning::Stairs(id)) =
         context.names.scopes[0].get(&name.name).map(|entry| entry.meaning.clone())
     {

@@ -183,7 +183,7 @@ impl Motion {
             return;
         };
         let points: Vec<Millimetres> = match plan {
-            Plan::Way(points) => {
+            Plan::Way(points) | Plan::Through(points) => {
                 std::iter::once(place).chain(points.iter().map(|p| millimetres(*p))).collect()
             }
             Plan::Follow(trajectory, _) => {
@@ -192,7 +192,7 @@ impl Motion {
             }
             _ => Vec::new(),
         };
-        let was_shown = matches!(self.seen[agent], Plan::Way(_) | Plan::Follow(..));
+        let was_shown = is_shown(&self.seen[agent]);
         self.seen[agent] = plan.clone();
         if was_shown || !points.is_empty() {
             self.numbers += 2 * points.len();
@@ -252,11 +252,15 @@ impl Motion {
 /// Whether a plan is the one that was seen last.
 fn is_same(plan: &Plan, last: &Plan) -> bool {
     match (plan, last) {
-        (Plan::Way(a), Plan::Way(b)) => Arc::ptr_eq(a, b),
+        (Plan::Way(a), Plan::Way(b)) | (Plan::Through(a), Plan::Through(b)) => Arc::ptr_eq(a, b),
         (Plan::Follow(a, _), Plan::Follow(b, _)) => Arc::ptr_eq(a, b),
-        (Plan::Way(_) | Plan::Follow(..), _) | (_, Plan::Way(_) | Plan::Follow(..)) => false,
-        _ => true,
+        _ => !is_shown(plan) && !is_shown(last),
     }
+}
+
+/// Whether a plan is drawn.
+fn is_shown(plan: &Plan) -> bool {
+    matches!(plan, Plan::Way(_) | Plan::Through(_) | Plan::Follow(..))
 }
 
 #[cfg(test)]

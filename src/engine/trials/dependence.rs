@@ -5,7 +5,7 @@ use crate::compile::Study;
 use crate::engine::trials::executor::{Cells, Executor, Job, Threads};
 use crate::logic::Invalid;
 use crate::trials::budget::Budget;
-use crate::trials::cell::{Cell, Item};
+use crate::trials::cell::{Cell, Item, Reading};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -86,23 +86,44 @@ impl Dependence {
     }
 }
 
+/// One trial of so many runs twice where drivers are not those of the kernel.
+const TWICE: u64 = 100;
+
 /// Threads whose outcomes are looked at.
 pub struct Watched<'a> {
     threads: &'a Threads,
     /// What the outcomes tell.
     pub dependence: Dependence,
+    is_twice: bool,
 }
 
 impl<'a> Watched<'a> {
     /// Of these threads.
     pub fn new(threads: &'a Threads) -> Self {
-        Self { threads, dependence: Dependence::default() }
+        Self { threads, dependence: Dependence::default(), is_twice: false }
+    }
+
+    /// One trial in a hundred runs twice: a driver that answers otherwise the second time says so itself, as a fault.
+    #[must_use]
+    pub fn twice(self, is_twice: bool) -> Self {
+        Self { is_twice, ..self }
     }
 }
 
 impl Executor for Watched<'_> {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let cells = self.threads.run(job, items, budget)?;
+        let is_checked = |place: &usize| self.is_twice && items[*place].index.is_multiple_of(TWICE);
+        let checked: Vec<usize> = (0..items.len()).filter(is_checked).collect();
+        // Beside the others, so that they fill lanes instead of batches of their own.
+        let again: Vec<Item> = checked.iter().map(|place| items[*place]).collect();
+        let mut cells = self.threads.run(job, &[items, &again].concat(), budget)?;
+        for (row, place) in (items.len()..).zip(checked) {
+            let row = cells.row(row).filter(|row| row.iter().any(|cell| cell.reading == Reading::Faulty));
+            if let Some(row) = row.map(<[Cell]>::to_vec) {
+                cells.put(place, &row);
+            }
+        }
+        cells.truncate(items.len());
         for (item, row) in items.iter().zip(cells.rows()) {
             if let Some(row) = row {
                 self.dependence.see(job, *item, row);

@@ -70,6 +70,12 @@ impl Cells {
         }
     }
 
+    /// Drops the rows from a place on.
+    pub(in crate::engine) fn truncate(&mut self, items: usize) {
+        self.list.truncate(items * self.width);
+        self.finished.truncate(items);
+    }
+
     /// The cells of a trial, one a column; `None` if it was not finished in time.
     pub fn row(&self, place: usize) -> Option<&[Cell]> {
         (*self.finished.get(place)?).then(|| &self.list[place * self.width..][..self.width])

@@ -48,6 +48,9 @@ pub(in crate::engine) fn unresolved(
         if let Some(reason) = queues.overrun(&scenario.sources, 0).or_else(lost_sight) {
             return format!("{reason} (at {time})");
         }
+        if let Some(agent) = state.undriven(0) {
+            return format!("the driver of `{}` failed at {time}", scenario.agents[agent].name);
+        }
         if run.end(0) == Some(End::Diverged) {
             return format!("diverged at {time}: {}", divergence(program, state));
         }

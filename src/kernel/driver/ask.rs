@@ -70,6 +70,15 @@ fn one(drive: &Drive, state: &mut State, slot: Slot) {
     let mut memory = held.memory.clone();
     let plan = driver.plan(&situation, &mut memory);
     state.plans.held_mut(slot).memory = memory;
+    if let Plan::Failed(fault) = plan {
+        let here = Mask::lane(trial);
+        if fault.is_some() {
+            (state.faults[trial], state.faulty) = (fault, state.faulty | here);
+        }
+        state.diverged |= here;
+        state.plans.held_mut(slot).plan = plan;
+        return;
+    }
     take_over(drive, state, slot, plan, after);
 }
 
@@ -97,7 +106,7 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
     course.fresh |= here;
     course.time.0[lane] = -after;
     match &plan {
-        Plan::Keep => {}
+        Plan::Keep | Plan::Failed(_) => {}
         Plan::Straight => course.watched |= here,
         Plan::NoWay => {
             course.stands |= here;
@@ -119,7 +128,7 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
             }
             course.next_ask.0[lane] = tick + steps_over(*seconds, drive.dt);
         }
-        Plan::Way(points) => {
+        Plan::Way(points) | Plan::Through(points) => {
             if let (Some(first), false) = (points.first(), has_arrived) {
                 course.way |= here;
                 course.set_goal(lane, *first, at);

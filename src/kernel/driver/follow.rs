@@ -234,7 +234,8 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
     let held = state.plans.held(slot);
     match held.plan.clone() {
         Plan::Way(_) if is_due && chooses_again(drive, state, slot) => state.plans.ask(slot, Occasion::Looks),
-        Plan::Way(points) => pass(drive, state, slot, &points, is_due),
+        Plan::Way(points) => pass(drive, state, slot, &points, (is_due, true)),
+        Plan::Through(points) => pass(drive, state, slot, &points, (is_due, false)),
         Plan::Follow(trajectory, _) => {
             let course = &mut state.plans.courses[block];
             let rate = state.bodies[Parameter::Speed][block].0[lane] / course.own_speed.0[lane];
@@ -261,7 +262,7 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
                 state.plans.ask(slot, Occasion::Left);
             }
         }
-        Plan::Keep | Plan::NoWay | Plan::There => {}
+        Plan::Keep | Plan::NoWay | Plan::There | Plan::Failed(_) => {}
     }
 }
 
@@ -311,9 +312,9 @@ fn is_hidden(drive: &Drive, state: &mut State, slot: Slot) -> bool {
     way.is_some_and(|way| !drive.sees(state.closed_doors(slot.lane), (at, at + way), radius))
 }
 
-/// On a way of points: passes the present one where the next is in sight, and at times any point before one in sight; looks
-/// for the present one if that is due.
-fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: bool) {
+/// On a way of points: passes the present one where the next is in sight, and, unless each is to be passed in turn, at times any
+/// point before one in sight; looks for the present one if that is due.
+fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], (is_due, skips): (bool, bool)) {
     let Slot { block, lane } = slot;
     let person = Person::new(drive, state, slot);
     let (at, radius) = (person.at(), person.radius());
@@ -327,8 +328,11 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
     let passes = d.x * along.x + d.y * along.y <= 0.0 && square <= PASSING * PASSING;
     let (closed, mut blocker) = (state.closed_doors(lane), state.plans.held(slot).blocker);
     let mut point = first;
+    let is_reached = square <= radius * radius * 4.0 || passes;
     // An agent that keeps a lane turns at its end.
-    if square <= radius * radius * 4.0 || passes || is_due && goal == points[first] {
+    if is_reached && !skips {
+        point += 1;
+    } else if is_reached || is_due && skips && goal == points[first] {
         while point < points.len() {
             let next = points.get(point + 1).copied().unwrap_or(leg);
             let found = drive.blocker(closed, (at, next), radius, blocker);
@@ -347,7 +351,7 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
             state.plans.courses[block].fresh |= Mask::lane(lane);
         } else if is_due && !sees(drive, state, slot, points[first]) {
             state.plans.ask(slot, Occasion::Left);
-        } else if is_due {
+        } else if is_due && skips {
             keep_lane(drive, state, slot, (start, *next, points.get(first + 1).copied().unwrap_or(leg)));
         }
     } else {

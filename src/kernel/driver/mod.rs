@@ -86,7 +86,12 @@ pub(super) fn look_for_ways(drive: &Drive, state: &mut State, lane: usize) {
     for agent in (0..state.agents).filter(|&agent| drive.drivers.of(agent).is_some()) {
         let slot = state.slot(agent, lane);
         let is_here = state.present[slot.block].has(slot.lane);
-        if is_here && matches!(state.plans.plan(slot), Some(Plan::Way(_) | Plan::Straight | Plan::NoWay)) {
+        if is_here
+            && matches!(
+                state.plans.plan(slot),
+                Some(Plan::Way(_) | Plan::Through(_) | Plan::Straight | Plan::NoWay)
+            )
+        {
             let held = state.plans.held_mut(slot);
             (held.free, held.blocker) = (None, None);
             state.plans.ask(slot, Occasion::Doors);

@@ -6,6 +6,7 @@ pub(super) use trajectory::Piece;
 pub use trajectory::{Sample, Trajectory};
 
 use crate::base::geometry::Vec2;
+use crate::kernel::fault::Fault;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -28,11 +29,15 @@ pub enum Plan {
     /// line through it, once the next one is in sight; every 0.5 s points before one in sight are skipped, and a point out of
     /// sight is asked about. In sight is what a body of half the radius can go to straight.
     Way(Arc<[Vec2]>),
+    /// The same, but each of the points is passed in turn: none is skipped because a later one is in sight.
+    Through(Arc<[Vec2]>),
     /// Is driven along a trajectory by its driving velocity; all forces act on it.
     Follow(Arc<Trajectory>, Limits),
     /// Is moved along a trajectory by itself: no force moves it. Others feel it as a body with its velocity, which in
     /// contact does not yield. The trajectory begins where the agent is. It is one step; no leg ends before it does.
     Step(Arc<Trajectory>),
+    /// The driver failed, and the trial is unresolved; with a fault no trial of the model can be trusted.
+    Failed(Option<Fault>),
 }
 
 /// What a driver remembers of a person from plan to plan, in a trial.

@@ -17,6 +17,7 @@ mod whereabouts;
 
 use super::fault::Fault;
 pub use super::layout::{Layout, Slot};
+use super::plan::Plan;
 use super::tape::Tape;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -192,6 +193,12 @@ impl State {
     pub fn name_of(&self, scenario: &Scenario, agent: AgentId, lane: usize) -> String {
         let arrival = self.queues.arrival(&scenario.sources, agent, lane);
         arrival.unwrap_or_else(|| scenario.agents[agent.0 as usize].name.clone())
+    }
+
+    /// An agent of the trial in a lane whose driver failed.
+    pub fn undriven(&self, lane: usize) -> Option<usize> {
+        (0..self.agents)
+            .find(|&agent| matches!(self.plans.plan(self.slot(agent, lane)), Some(Plan::Failed(_))))
     }
 
     /// Number of trials that it can hold.

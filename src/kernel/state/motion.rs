@@ -1,6 +1,7 @@
 //! The places, velocities and forces of all agents: part of the state. Threads may share them, block by block.
 
 use super::{Bodies, Driving, Layout, Queues, Slot, State};
+use crate::base::geometry::Vec2;
 use crate::base::lanes::{Lanes, Mask};
 use fearless_simd::Simd;
 
@@ -27,6 +28,12 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Puts somebody at a place, m, with a velocity, m/s.
+    pub(in crate::kernel) fn put(&mut self, Slot { block, lane }: Slot, at: Vec2, velocity: Vec2) {
+        (self.x[block].0[lane], self.y[block].0[lane]) = (at.x, at.y);
+        (self.vx[block].0[lane], self.vy[block].0[lane]) = (velocity.x, velocity.y);
+    }
+
     /// So many blocks at rest in the origin.
     pub(super) fn new(blocks: usize) -> Self {
         let zero = || vec![Lanes::ZERO; blocks];

@@ -44,8 +44,14 @@ impl Builder<'_> {
         let name = parts.part(Rule::name).map(|name| self.ident(&name));
         match rule {
             Rule::level => {
+                let (name, before) = (name?, self.broken.len());
                 let (items, fields) = self.level(parts);
-                Some(SceneItem::Level { items: within(name.as_ref()?, items), name: name?, fields })
+                for lost in &mut self.broken[before..] {
+                    let full = |own: &String| format!("{}.{own}", name.name);
+                    lost.name = lost.name.as_ref().map(full);
+                    lost.words.extend(lost.words.iter().map(full).collect::<Vec<_>>());
+                }
+                Some(SceneItem::Level { items: within(&name, items), name, fields })
             }
             Rule::stairs => {
                 let a = self.expr(parts.part(Rule::place)?);
