@@ -213,8 +213,8 @@ fn lay_out(
         });
         let points = scene.points.iter().filter(|(name, _)| is_own(name)).map(|(_, p)| *p);
         let lines = scene.lines[known.lines.clone()].iter().flat_map(|line| [line.segment.a, line.segment.b]);
-        let of_flights = flights.iter().flat_map(|flight| flight.levels.iter().zip(&flight.lines));
-        let of_flights = of_flights.filter(|(of, _)| **of == level).flat_map(|(_, line)| [line.a, line.b]);
+        let of_flights = flights.iter().flat_map(|flight| flight.levels.iter().zip(flight.railings()));
+        let of_flights = of_flights.filter(|(of, _)| **of == level).flat_map(|(_, corners)| corners);
         let corners = of_barriers.chain(of_regions).chain(of_plans).flat_map(|b| [b.low, b.high]);
         let bounds = Bounds::around(corners.chain(points).chain(lines).chain(of_flights)).unwrap_or_default();
         // Whole metres keep the digits of coordinates.
@@ -379,7 +379,13 @@ fn of_file(context: &mut Context<'_>, flight: &Flight) -> Lowered<()> {
     }
     let fields = Fields { width: None, run: None, speeds: [None; 2], table: 0 };
     let run = Some(flight.run).filter(|run| *run >= NARROWEST);
-    raise(context, &flight.name, ([low, high], lines, flight.upward), run, &fields)
+    raise(context, &flight.name, ([low, high], lines, flight.upward), run, &fields)?;
+    for (corners, way) in flight.railings().into_iter().zip([below, above]) {
+        let pieces = corners.windows(2).map(|pair| Segment::new(pair[0] + way, pair[1] + way));
+        let obstacle = Obstacle::Wall(pieces.collect());
+        context.scene.barriers.push(Barrier { name: flight.name.name.clone(), obstacle });
+    }
+    Ok(())
 }
 
 /// Builds a flight between two lines of two islands; `upward` are the directions in which one goes up there.

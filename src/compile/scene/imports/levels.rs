@@ -24,6 +24,8 @@ use std::collections::BTreeSet;
 const WIDTH: f64 = 1.2;
 /// An opening this near to the outline of a stairwell leads into it, as a door opens walls, m.
 const REACH: f64 = 0.5;
+/// How far railings go on behind the lines of a flight: beyond the reach of their forces, m.
+const RAILING: f64 = 1.0;
 /// Between those who go up and those who go down through one opening, m.
 const BETWEEN: f64 = 0.06;
 /// The run of usual steps for each metre of rise: 29 cm and 17 cm (DIN 18065).
@@ -54,6 +56,15 @@ pub(crate) struct Flight {
     pub(crate) upward: [Vec2; 2],
     /// Length in the plan, m.
     pub(crate) run: f64,
+}
+
+impl Flight {
+    /// The corners of the railings behind foot and head. Whoever came there from aside would find no way across the line.
+    pub(crate) fn railings(&self) -> [[Vec2; 4]; 2] {
+        let around =
+            |line: Segment, away: Vec2| [line.a, line.a + away * RAILING, line.b + away * RAILING, line.b];
+        [around(self.lines[0], self.upward[0]), around(self.lines[1], -self.upward[1])]
+    }
 }
 
 /// A flight before it has a name: what may be its name, the lower level of the building, its lines, directions, run.
