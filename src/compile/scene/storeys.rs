@@ -214,7 +214,8 @@ fn lay_out(
         let points = scene.points.iter().filter(|(name, _)| is_own(name)).map(|(_, p)| *p);
         let lines = scene.lines[known.lines.clone()].iter().flat_map(|line| [line.segment.a, line.segment.b]);
         let of_flights = flights.iter().flat_map(|flight| flight.levels.iter().zip(flight.railings()));
-        let of_flights = of_flights.filter(|(of, _)| **of == level).flat_map(|(_, corners)| corners);
+        let of_flights = of_flights.filter(|(of, _)| **of == level).flat_map(|(_, pieces)| pieces);
+        let of_flights = of_flights.flat_map(|piece| [piece.a, piece.b]);
         let corners = of_barriers.chain(of_regions).chain(of_plans).flat_map(|b| [b.low, b.high]);
         let bounds = Bounds::around(corners.chain(points).chain(lines).chain(of_flights)).unwrap_or_default();
         // Whole metres keep the digits of coordinates.
@@ -380,9 +381,8 @@ fn of_file(context: &mut Context<'_>, flight: &Flight) -> Lowered<()> {
     let fields = Fields { width: None, run: None, speeds: [None; 2], table: 0 };
     let run = Some(flight.run).filter(|run| *run >= NARROWEST);
     raise(context, &flight.name, ([low, high], lines, flight.upward), run, &fields)?;
-    for (corners, way) in flight.railings().into_iter().zip([below, above]) {
-        let pieces = corners.windows(2).map(|pair| Segment::new(pair[0] + way, pair[1] + way));
-        let obstacle = Obstacle::Wall(pieces.collect());
+    for (pieces, way) in flight.railings().into_iter().zip([below, above]) {
+        let obstacle = Obstacle::Wall(pieces.into_iter().map(|piece| moved(piece, way)).collect());
         context.scene.barriers.push(Barrier { name: flight.name.name.clone(), obstacle });
     }
     Ok(())

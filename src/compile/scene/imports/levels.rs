@@ -26,6 +26,8 @@ const WIDTH: f64 = 1.2;
 const REACH: f64 = 0.5;
 /// How far railings go on behind the lines of a flight: beyond the reach of their forces, m.
 const RAILING: f64 = 1.0;
+/// Rounding of lengths, m.
+const HAIR: f64 = 1e-6;
 /// Between those who go up and those who go down through one opening, m.
 const BETWEEN: f64 = 0.06;
 /// The run of usual steps for each metre of rise: 29 cm and 17 cm (DIN 18065).
@@ -52,6 +54,8 @@ pub(crate) struct Flight {
     pub(crate) levels: [usize; 2],
     /// Foot and head in the coordinates of their levels, from the left to the right of who goes up.
     pub(crate) lines: [Segment; 2],
+    /// The openings around them, which may be wider.
+    openings: [Segment; 2],
     /// In which direction one goes up there, unit vectors.
     pub(crate) upward: [Vec2; 2],
     /// Length in the plan, m.
@@ -59,15 +63,20 @@ pub(crate) struct Flight {
 }
 
 impl Flight {
-    /// The corners of the railings behind foot and head. Whoever came there from aside would find no way across the line.
-    pub(crate) fn railings(&self) -> [[Vec2; 4]; 2] {
-        let around =
-            |line: Segment, away: Vec2| [line.a, line.a + away * RAILING, line.b + away * RAILING, line.b];
-        [around(self.lines[0], self.upward[0]), around(self.lines[1], -self.upward[1])]
+    /// The railings beside and behind foot and head. Whoever came there from aside would find no way across the line.
+    pub(crate) fn railings(&self) -> [Vec<Segment>; 2] {
+        let around = |end: usize, away: Vec2| {
+            let (line, opening) = (self.lines[end], self.openings[end]);
+            let back = [line.a + away * RAILING, line.b + away * RAILING];
+            let corners = [opening.a, line.a, back[0], back[1], line.b, opening.b];
+            let pieces = corners.windows(2).map(|pair| Segment::new(pair[0], pair[1]));
+            pieces.filter(|piece| piece.length() > HAIR).collect()
+        };
+        [around(0, self.upward[0]), around(1, -self.upward[1])]
     }
 }
 
-/// A flight before it has a name: what may be its name, the lower level of the building, its lines, directions, run.
+/// A flight before it has a name: what may name it, the lower level of the building, its openings, directions, run.
 type Found<'f> = (&'f Feature, usize, [Segment; 2], [Vec2; 2], f64);
 
 /// What a file has of stairs, if it has all levels that the import names.
@@ -143,7 +152,7 @@ pub(crate) fn flights(
     }
     found.extend(stairwells(context, building)?);
     let mut flights = Vec::new();
-    for (number, (feature, lower, lines, upward, run)) in found.into_iter().enumerate() {
+    for (number, (feature, lower, openings, upward, run)) in found.into_iter().enumerate() {
         let on = |level_of: usize| level(context, &building.levels[level_of].0.name).ok_or(Reported);
         let levels = [on(lower)?, on(lower + 1)?];
         let is_free = |name: &&str| is_name(name) && context.names.scopes[0].get(name).is_none();
@@ -151,7 +160,10 @@ pub(crate) fn flights(
         let name = own.map_or_else(|| format!("stairs{}", number + 1), str::to_owned);
         let name = Ident { name, span };
         declare_stairs(context, &name);
-        flights.push(Flight { name, levels, lines, upward, run });
+        let [low, high] = openings.map(|opening| opening.length());
+        let width = if low < high { low } else { high };
+        let line = |end: usize| across(0.5 * (openings[end].a + openings[end].b), upward[end], width);
+        flights.push(Flight { name, levels, lines: [line(0), line(1)], openings, upward, run });
     }
     Ok(flights)
 }
