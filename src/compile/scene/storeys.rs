@@ -335,10 +335,9 @@ fn check_line(context: &mut Context<'_>, (name, span): (&Ident, Span), segment: 
 /// The direction in which one goes up at a line, a unit vector. `way` leads from the foot to the head.
 fn upward(line: &Segment, way: Vec2) -> Vec2 {
     let along = (line.b - line.a).normalize();
-    let right = Vec2::new(along.y, -along.x);
-    let ahead = way.dot(&right);
-    // Else the first end lies on the left of who goes up.
-    if ahead < -FACES * way.norm() { -right } else { right }
+    // The first end lies on the left of who goes up, unless the other line lies behind them.
+    let onward = Vec2::new(-along.y, along.x);
+    if way.dot(&onward) < -FACES * way.norm() { -onward } else { onward }
 }
 
 /// `stairs s: ground.foot -- first.head { … }`
