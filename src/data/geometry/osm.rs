@@ -128,7 +128,7 @@ fn is_area(properties: &Properties) -> bool {
     })
 }
 
-impl<'t> Elements<'t> {
+impl Elements<'_> {
     fn point(&self, id: &str) -> Result<Vec2, String> {
         match self.nodes.get(id) {
             Some(Some(at)) => Ok(*at),
@@ -176,7 +176,7 @@ impl<'t> Elements<'t> {
 }
 
 /// Closed rings of ways that meet at their ends.
-fn joined<'t>(mut ways: Vec<Vec<&'t str>>) -> Result<Vec<Vec<&'t str>>, String> {
+fn joined(mut ways: Vec<Vec<&str>>) -> Result<Vec<Vec<&str>>, String> {
     let mut rings = Vec::new();
     while let Some(mut ring) = ways.pop() {
         while ring.first() != ring.last() || ring.len() < 2 {
