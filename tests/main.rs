@@ -35,6 +35,7 @@ mod intention;
 mod jumps;
 mod lanes;
 mod language;
+mod levels;
 mod library;
 mod machines;
 mod measure;

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use smc::data::geometry::{Placement, open_doors, plan, read_dxf, read_geojson, read_wkt};
+use smc::data::geometry::{Placement, open_doors, plan, read_dxf, read_geojson, read_osm, read_wkt};
 use smc::base::geometry::Vec2;
 use smc::data::tracks::{Format, Reading, Velocity, read_batch, read_eth_biwi, read_groups};
 use smc::perception::{ConstantVelocity, Inferring, infer};
@@ -22,7 +22,8 @@ fuzz_target!(|text: &str| {
         }
     }
     let drawing = read_dxf(text, None, &mut |_, _| true).map(|drawing| drawing.features);
-    for features in [read_geojson(text), read_wkt(text), drawing] {
+    let osm = read_osm(text, &mut |_, _| true);
+    for features in [read_geojson(text), read_wkt(text), osm, drawing] {
         for walkable in [false, true] {
             let Ok(mut features) = features.clone() else { continue };
             let _ = Placement::Plane { unit: 1.0, origin: Vec2::zeros(), is_stated: false }.place(&mut features);

@@ -75,16 +75,28 @@ pub(crate) fn declare_scene<'a>(context: &mut Context<'a>, items: &'a [SceneItem
                 level.barriers = barriers..context.scene.barriers.len();
                 level.lines = lines..context.scene.lines.len();
             }
-            SceneItem::Stairs { name, .. } => {
-                context.shapes.push(None);
-                let id = RegionId(context.shapes.len() as u32 - 1);
-                let nothing = Shape::rectangle(Vec2::zeros(), Vec2::zeros());
-                context.scene.regions.push(Region::new(&name.name, nothing));
-                entry::enter(context, name, Meaning::Stairs(id));
+            SceneItem::Stairs { name, .. } => declare_stairs(context, name),
+            SceneItem::Storeys { import, levels, .. } if levels.is_empty() => {
+                let span = storeys::place_of(import);
+                let error = error!(E0412, span, "the import names no levels");
+                let hint =
+                    "write which level of the file is which: `ground = \"0\"; first = \"1\"; storey = 4 m`";
+                context.note(error.hint(hint));
             }
-            SceneItem::Import { called: None, .. } | SceneItem::Periodic { .. } => {}
+            SceneItem::Import { called: None, .. }
+            | SceneItem::Periodic { .. }
+            | SceneItem::Storeys { .. } => {}
         }
     }
+}
+
+/// Declares a flight of stairs, a region of its own.
+fn declare_stairs(context: &mut Context<'_>, name: &Ident) {
+    context.shapes.push(None);
+    let id = RegionId(context.shapes.len() as u32 - 1);
+    let nothing = Shape::rectangle(Vec2::zeros(), Vec2::zeros());
+    context.scene.regions.push(Region::new(&name.name, nothing));
+    entry::enter(context, name, Meaning::Stairs(id));
 }
 
 /// Settles the shapes of all scenes. The doors are set when all walls are known.
@@ -97,9 +109,9 @@ pub(crate) fn settle<'a>(
         return storeys::settle(context, scenes, files);
     }
     let (mut barrier, mut line) = (0, 0);
-    let mut doors = Vec::new();
+    let (mut doors, mut middle) = (Vec::new(), None);
     for items in scenes {
-        doors.extend(settle_scene(context, items, files, (&mut barrier, &mut line)));
+        doors.extend(settle_scene(context, items, files, (&mut barrier, &mut line, &mut middle)));
     }
     doors
 }
@@ -116,17 +128,17 @@ fn settle_region(context: &mut Context<'_>, name: &Ident, shape: &ShapeExpr) {
     }
 }
 
-/// Settles the shapes of a scene or level; `next` and `line` are the numbers of its first barrier and its first line. The doors are set
-/// when all walls are known.
+/// Settles the shapes of a scene or level; `next` and `line` are the numbers of its first barrier and its first line, `middle` is that of
+/// the first file in degrees, which all share. The doors are set when all walls are known.
 pub(crate) fn settle_scene<'a>(
     context: &mut Context<'a>,
     items: &'a [SceneItem],
     files: &Files,
-    (next, line): (&mut usize, &mut usize),
+    (next, line, middle): (&mut usize, &mut usize, &mut Option<Vec2>),
 ) -> Vec<doors::Door> {
     let first = context.scene.barriers.len();
     let imports: Vec<Import<'_>> = items.iter().filter_map(import_of).collect();
-    imports::import_all(context, &imports, files);
+    imports::import_all(context, &imports, files, middle);
     periodic::check_imported(context, items, first);
     let mut doors = Vec::new();
     for item in items {
@@ -172,6 +184,7 @@ pub(crate) fn settle_scene<'a>(
             SceneItem::Import { .. }
             | SceneItem::Periodic { .. }
             | SceneItem::Level { .. }
+            | SceneItem::Storeys { .. }
             | SceneItem::Stairs { .. } => {}
         }
     }
@@ -188,7 +201,7 @@ pub(crate) fn settle_scene<'a>(
 }
 
 /// An import as written.
-fn import_of(item: &SceneItem) -> Option<Import<'_>> {
+pub(crate) fn import_of(item: &SceneItem) -> Option<Import<'_>> {
     let SceneItem::Import { path, walkable, filter, called, fields, .. } = item else { return None };
     let walkable = *walkable || called.as_ref().is_some_and(is_misspelt);
     Some(Import { path, walkable, filter: filter.as_ref(), called: called.as_ref(), fields })

@@ -9,7 +9,12 @@ use crate::compile::context::{
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::files::Files;
-use crate::compile::scene::{doors::Door, settle_region, settle_scene};
+use crate::compile::scene::{
+    doors::Door,
+    import_of,
+    imports::levels::{Flight, flights, survey},
+    settle_region, settle_scene,
+};
 use crate::model::storeys::APART;
 use crate::model::{Barrier, Island, Obstacle, Portal};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Value};
@@ -46,38 +51,66 @@ const TABLES: [(&str, Table); 2] = [
 pub(crate) fn settle<'a>(context: &mut Context<'a>, scenes: &[&'a [SceneItem]], files: &Files) -> Vec<Door> {
     let mut doors: Vec<(usize, Door)> = Vec::new();
     let mut heights = Vec::new();
-    let mut imported = Vec::new();
+    let (mut imported, mut middle) = (Vec::new(), None);
     let items = || scenes.iter().flat_map(|items| items.iter());
     let levels = items().filter_map(|item| match item {
         SceneItem::Level { name, fields, items } => Some((name, fields, items)),
         _ => None,
     });
+    // Files that become several levels, and those that could not be read.
+    let (mut buildings, mut lost) = (Vec::new(), Vec::new());
+    for item in items() {
+        let SceneItem::Storeys { import, levels, storey } = item else { continue };
+        let Some(import) = import_of(import).filter(|_| !levels.is_empty()) else { continue };
+        let path = import.path.span;
+        match survey(context, import, levels, storey.as_ref(), files) {
+            Ok(building) => buildings.push(building),
+            Err(Reported) => lost.push(path),
+        }
+    }
     for (level, (name, fields, items)) in levels.enumerate() {
+        if let [SceneItem::Import { path, .. }] = items.as_slice()
+            && lost.contains(&path.span)
+        {
+            heights.push((None, name.span));
+            imported.push(0..0);
+            continue;
+        }
         heights.push(height(context, name, fields));
         context.levels.frame = Some(level);
         let known = &context.levels.all[level];
         let (mut barrier, mut line) = (known.barriers.start, known.lines.start);
         let first = context.scene.barriers.len();
-        let settled = settle_scene(context, items, files, (&mut barrier, &mut line));
+        let settled = settle_scene(context, items, files, (&mut barrier, &mut line, &mut middle));
         doors.extend(settled.into_iter().map(|door| (level, door)));
         imported.push(first..context.scene.barriers.len());
         context.levels.frame = None;
     }
     let is_sound = check_heights(context, &heights);
-    lay_out(context, &heights, &imported, &mut doors);
+    let of_files = buildings.iter_mut().filter_map(|building| flights(context, building, &mut middle).ok());
+    let of_files: Vec<Flight> = of_files.flatten().collect();
+    lay_out(context, &heights, (&imported, &of_files), &mut doors);
     let mut stairs = Vec::new();
     for item in items() {
         match item {
             SceneItem::Level { items, .. } => {
                 for item in items {
-                    if let SceneItem::Level { name, .. } | SceneItem::Stairs { name, .. } = item {
-                        let said = format!("`{}` lies within a level", name.name);
-                        let error = error!(E0412, name.span, "{said}"; hint: "write it beside the levels, in the scene");
-                        context.note(error);
-                    }
+                    let (said, span) = match item {
+                        SceneItem::Level { name, .. } | SceneItem::Stairs { name, .. } => {
+                            (format!("`{}` lies within a level", name.name), name.span)
+                        }
+                        SceneItem::Storeys { .. } => {
+                            ("an import by level lies within a level".to_owned(), place_of(item))
+                        }
+                        _ => continue,
+                    };
+                    let error =
+                        error!(E0412, span, "{said}"; hint: "write it beside the levels, in the scene");
+                    context.note(error);
                 }
             }
             SceneItem::Stairs { name, ends, fields, .. } => stairs.push((name, ends, fields)),
+            SceneItem::Storeys { .. } => {}
             SceneItem::Region { name, shape } if is_of_names(shape) => settle_region(context, name, shape),
             SceneItem::Periodic { axis, .. } => {
                 let error = error!(E0412, axis.span, "a scene with levels has no periods");
@@ -95,6 +128,9 @@ pub(crate) fn settle<'a>(context: &mut Context<'a>, scenes: &[&'a [SceneItem]], 
             let _ = flight(context, name, ends, fields);
         }
     }
+    for flight in of_files.iter().filter(|_| is_sound) {
+        let _ = of_file(context, flight);
+    }
     doors.into_iter().map(|(_, door)| door).collect()
 }
 
@@ -107,7 +143,7 @@ fn is_of_names(shape: &ShapeExpr) -> bool {
     }
 }
 
-fn place_of(item: &SceneItem) -> Span {
+pub(crate) fn place_of(item: &SceneItem) -> Span {
     match item {
         SceneItem::Wall { span, .. }
         | SceneItem::Line { span, .. }
@@ -118,6 +154,7 @@ fn place_of(item: &SceneItem) -> Span {
         SceneItem::Obstacle { shape, .. } | SceneItem::Region { shape, .. } => shape.span(),
         SceneItem::Point { at, .. } => at.span,
         SceneItem::Level { name, .. } => name.span,
+        SceneItem::Storeys { import, .. } => place_of(import),
     }
 }
 
@@ -157,7 +194,7 @@ fn check_heights(context: &mut Context<'_>, heights: &[(Option<f64>, Span)]) -> 
 fn lay_out(
     context: &mut Context<'_>,
     heights: &[(Option<f64>, Span)],
-    imported: &[std::ops::Range<usize>],
+    (imported, flights): (&[std::ops::Range<usize>], &[Flight]),
     doors: &mut [(usize, Door)],
 ) {
     let mut order: Vec<usize> = (0..heights.len()).collect();
@@ -180,8 +217,10 @@ fn lay_out(
         });
         let points = scene.points.iter().filter(|(name, _)| is_own(name)).map(|(_, p)| *p);
         let lines = scene.lines[known.lines.clone()].iter().flat_map(|line| [line.segment.a, line.segment.b]);
+        let of_flights = flights.iter().flat_map(|flight| flight.levels.iter().zip(&flight.lines));
+        let of_flights = of_flights.filter(|(of, _)| **of == level).flat_map(|(_, line)| [line.a, line.b]);
         let corners = of_barriers.chain(of_regions).chain(of_plans).flat_map(|b| [b.low, b.high]);
-        let bounds = Bounds::around(corners.chain(points).chain(lines)).unwrap_or_default();
+        let bounds = Bounds::around(corners.chain(points).chain(lines).chain(of_flights)).unwrap_or_default();
         // Whole metres keep the digits of coordinates.
         let way = Vec2::new(edge.map_or(0.0, |edge| (edge + APART - bounds.low.x).ceil()), 0.0);
         edge = Some(bounds.high.x + way.x);
@@ -270,17 +309,24 @@ fn line_of(context: &mut Context<'_>, name: &Ident, end: &Expr) -> Lowered<(u32,
     let typed = context.lower(end, &Locals::default())?;
     let Typed::Line(id) = typed else { return context.mismatch(end.span, "a line of a level", &typed) };
     let segment = context.scene.lines[id.0 as usize].segment;
+    check_line(context, (name, end.span), &segment)?;
+    let middle = 0.5 * (segment.a + segment.b);
+    Ok((context.scene.storeys.island_at(middle) as u32, segment))
+}
+
+/// Whether stairs may begin at a line: it is open, and belongs to no other stairs.
+fn check_line(context: &mut Context<'_>, (name, span): (&Ident, Span), segment: &Segment) -> Lowered<()> {
     let middle = 0.5 * (segment.a + segment.b);
     if let Some(barrier) = context.scene.barriers.iter().find(|one| one.obstacle.distance(middle) < IN_WALL) {
         let said = format!("the line of the stairs `{}` lies in {}", name.name, barrier.phrase());
-        return context.report(error!(E0412, end.span, "{said}"; hint: "leave the wall open there"));
+        return context.report(error!(E0412, span, "{said}"; hint: "leave the wall open there"));
     }
     // Flights side by side share an end of their lines.
     let inner = |line: &Segment| {
         let off = (line.b - line.a) * ENDS;
         Segment::new(line.a + off, line.b - off)
     };
-    let meets = |portal: &&Portal| inner(&portal.line).distance_to(&inner(&segment)) < IN_WALL;
+    let meets = |portal: &&Portal| inner(&portal.line).distance_to(&inner(segment)) < IN_WALL;
     let taken = context.scene.storeys.portals.iter().find(meets);
     if let Some(portal) = taken {
         let strip = portal.islands.iter().find_map(|k| {
@@ -289,18 +335,17 @@ fn line_of(context: &mut Context<'_>, name: &Ident, end: &Expr) -> Lowered<(u32,
         });
         let said =
             format!("two stairs begin at one line, `{}` and `{}`", strip.unwrap_or_default(), name.name);
-        return context.report(error!(E0412, end.span, "{said}"; hint: "give each flight a line of its own"));
+        return context.report(error!(E0412, span, "{said}"; hint: "give each flight a line of its own"));
     }
-    Ok((context.scene.storeys.island_at(middle) as u32, segment))
+    Ok(())
 }
 
 /// The direction in which one goes up at a line, a unit vector. `way` leads from the foot to the head.
 fn upward(line: &Segment, way: Vec2) -> Vec2 {
     let along = (line.b - line.a).normalize();
-    let right = Vec2::new(along.y, -along.x);
-    let ahead = way.dot(&right);
-    // Else the first end lies on the left of who goes up.
-    if ahead < -FACES * way.norm() { -right } else { right }
+    // The first end lies on the left of who goes up, unless the other line lies behind them.
+    let onward = Vec2::new(-along.y, along.x);
+    if way.dot(&onward) < -FACES * way.norm() { -onward } else { onward }
 }
 
 /// The rails around stairs on a level, so that its ways do not lead through: from the ends of a line, across it, and behind.
@@ -317,8 +362,8 @@ fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[
     let (fields, (low, foot), (high, head)) = (read?, foot?, head?);
     let storeys = &context.scene.storeys;
     let [lower, upper] = [low, high].map(|k| storeys.islands[k as usize].clone());
-    let rise = match (lower.height, upper.height) {
-        (Some(a), Some(b)) if b > a => b - a,
+    match (lower.height, upper.height) {
+        (Some(a), Some(b)) if b > a => {}
         (Some(a), Some(b)) => {
             let said = if a == b { "lead from a level to the same one" } else { "lead downward" };
             let span = ends[0].span.to(ends[1].span);
@@ -326,10 +371,46 @@ fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[
                 hint: "write the line of the lower level first: `stairs s: ground.foot -- first.head`"));
         }
         _ => return Err(Reported),
-    };
+    }
     let middle = |line: &Segment| 0.5 * (line.a + line.b);
     let way = (middle(&head) - upper.origin) - (middle(&foot) - lower.origin);
-    let Some(run) = fields.run.or(Some(way.norm()).filter(|run| *run >= NARROWEST)) else {
+    let run = fields.run.or(Some(way.norm()).filter(|run| *run >= NARROWEST));
+    let upward = [upward(&foot, way), upward(&head, way)];
+    raise(context, name, ([low, high], [foot, head], upward), run, &fields)
+}
+
+/// A flight of a file, which says where both of its lines lie.
+fn of_file(context: &mut Context<'_>, flight: &Flight) -> Lowered<()> {
+    let at = |level: usize| {
+        let name = &context.levels.all[level].name;
+        let island = context.scene.storeys.islands.iter().position(|island| island.name == *name);
+        island.map(|k| (k as u32, context.scene.storeys.islands[k].origin)).ok_or(Reported)
+    };
+    let [(low, below), (high, above)] = [at(flight.levels[0])?, at(flight.levels[1])?];
+    let moved = |line: Segment, way: Vec2| Segment::new(line.a + way, line.b + way);
+    let lines = [moved(flight.lines[0], below), moved(flight.lines[1], above)];
+    for line in &lines {
+        check_line(context, (&flight.name, flight.name.span), line)?;
+    }
+    let fields = Fields { width: None, run: None, speeds: [None; 2], table: 0 };
+    let run = Some(flight.run).filter(|run| *run >= NARROWEST);
+    raise(context, &flight.name, ([low, high], lines, flight.upward), run, &fields)?;
+    for (pieces, way) in flight.wings().into_iter().zip([below, above]) {
+        let obstacle = Obstacle::Wall(pieces.into_iter().map(|piece| moved(piece, way)).collect());
+        context.scene.barriers.push(Barrier { name: flight.name.name.clone(), obstacle });
+    }
+    Ok(())
+}
+
+/// Builds a flight between two lines of two islands; `upward` are the directions in which one goes up there.
+fn raise(
+    context: &mut Context<'_>,
+    name: &Ident,
+    ([low, high], [foot, head], [into, out]): ([u32; 2], [Segment; 2], [Vec2; 2]),
+    run: Option<f64>,
+    fields: &Fields,
+) -> Lowered<()> {
+    let Some(run) = run else {
         return context.report(error!(E0412, name.span, "the stairs `{}` have no length", name.name;
             hint: "write how far they lead in the plan: `run = 6 m`"));
     };
@@ -340,7 +421,9 @@ fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[
         return context.report(error!(E0412, name.span, "{said}";
             hint: "stairs are at least {NARROWEST} m wide, and no wider than their lines"));
     }
-    let table = TABLES[fields.table].1(run, rise);
+    let storeys = &context.scene.storeys;
+    let [below, above] = [low, high].map(|k| storeys.islands[k as usize].height.unwrap_or_default());
+    let table = TABLES[fields.table].1(run, above - below);
     let [up, down] = [0, 1].map(|k| fields.speeds[k].unwrap_or(table[k]));
     // Strips lie in a row above the levels.
     let islands = &context.scene.storeys.islands;
@@ -354,12 +437,12 @@ fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[
     let strip = Shape::rectangle(corner(0.0, 0.0), corner(run, width));
     let sides = [0.0, width].map(|y| Segment::new(corner(0.0, y), corner(run, y)));
     let across = |x: f64| Segment::new(corner(x, width), corner(x, 0.0));
+    let middle = |line: &Segment| 0.5 * (line.a + line.b);
     // A line from left to right, as wide as the stairs.
     let opening = |line: &Segment, upward: Vec2| {
         let left = Vec2::new(-upward.y, upward.x) * (0.5 * width);
         Segment::new(middle(line) + left, middle(line) - left)
     };
-    let (into, out) = (upward(&foot, way), upward(&head, way));
     let (below, above) = (opening(&foot, into), opening(&head, out));
     let flight = islands.len() as u32;
     let ahead = Vec2::new(1.0, 0.0);

@@ -1,6 +1,6 @@
 //! A drawing: the features of a file in any format.
 
-use super::{Feature, GeometryError, Select, read_dxf, read_wkt, select_geojson};
+use super::{Feature, GeometryError, Select, read_dxf, read_osm, read_wkt, select_geojson};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The format of a file, known by the end of its name.
@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub enum Format {
     /// `.dxf`
     Dxf,
+    /// `.osm`
+    Osm,
     /// `.wkt`
     Wkt,
     /// Anything else.
@@ -21,6 +23,8 @@ impl Format {
         let is = |format: &str| end.eq_ignore_ascii_case(format);
         if is("dxf") {
             Self::Dxf
+        } else if is("osm") {
+            Self::Osm
         } else if is("wkt") {
             Self::Wkt
         } else {
@@ -58,6 +62,7 @@ pub fn read(
         // Well-known text has no properties, so a filter takes all of it or nothing.
         Format::Wkt if !select("", &[]) => Ok(Drawing::default()),
         Format::Wkt => read_wkt(text).map(of),
+        Format::Osm => read_osm(text, select).map(of),
         Format::GeoJson => select_geojson(text, select).map(of),
     }
 }

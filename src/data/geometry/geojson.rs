@@ -4,6 +4,7 @@ use super::feature::{self, Feature, FilePlace, Geometry, GeometryError, Property
 use crate::base::geometry::Vec2;
 use geojson::feature::Id;
 use geojson::{GeoJson, GeometryValue, JsonValue, Position};
+use std::collections::BTreeMap;
 
 /// Reads all features. A feature without a geometry is passed over, as the format allows it.
 ///
@@ -26,29 +27,33 @@ pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature
         Ok(GeoJson::Geometry(shape)) => vec![geojson::Feature::from(shape)],
         Err(error) => return Err(vec![malformed(&error)]),
     };
+    let levels = levels(&features);
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     for (k, one) in features.into_iter().enumerate() {
         // IMDF (OGC 20-094) writes the type of a feature beside its properties.
         let kind = one.foreign_members.into_iter().flatten().filter(|(key, _)| key == "feature_type");
-        let properties: Vec<_> = one
+        let mut properties: Vec<_> = one
             .properties
             .into_iter()
             .flatten()
             .chain(kind)
             .map(|(key, value)| (key, property(value)))
             .collect();
+        let of_level = properties.iter().find_map(|(key, value)| match (key.as_str(), value) {
+            ("level_id", PropertyValue::Text(id)) => levels.get(id),
+            _ => None,
+        });
+        let of_level = of_level.or_else(|| levels.get(&id_of(one.id.as_ref()?)));
+        if let Some(level) = of_level.filter(|_| !properties.iter().any(|(key, _)| key == "level")) {
+            properties.push(("level".to_owned(), PropertyValue::Text(level.clone())));
+        }
         let name = properties
             .iter()
             .find_map(|(key, value)| match value {
                 PropertyValue::Text(name) if key == "name" => Some(name.clone()),
                 _ => None,
             })
-            .or_else(|| {
-                one.id.map(|id| match id {
-                    Id::String(text) => text,
-                    Id::Number(number) => number.to_string(),
-                })
-            })
+            .or_else(|| one.id.as_ref().map(id_of))
             .unwrap_or_default();
         let Some(geometry) = one.geometry else { continue };
         if !select(&name, &properties) {
@@ -69,6 +74,31 @@ pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature
         });
     }
     if errors.is_empty() { Ok(found) } else { Err(errors) }
+}
+
+fn id_of(id: &Id) -> String {
+    match id {
+        Id::String(text) => text.clone(),
+        Id::Number(number) => number.to_string(),
+    }
+}
+
+/// The levels of IMDF by their ids, as OSM has levels: the ordinal, and the short names that are no numbers. A short name
+/// may be the number of another level, as where the ground floor is called `1`.
+fn levels(features: &[geojson::Feature]) -> BTreeMap<String, String> {
+    let level = |one: &geojson::Feature| {
+        let of = |key: &str| one.property(key).or_else(|| one.foreign_members.as_ref()?.get(key));
+        of("feature_type").filter(|kind| kind.as_str() == Some("level"))?;
+        let short = match of("short_name") {
+            Some(JsonValue::Object(labels)) => labels.values().collect(),
+            short => short.into_iter().collect::<Vec<_>>(),
+        };
+        let short = short.into_iter().filter_map(JsonValue::as_str).map(str::trim);
+        let short = short.filter(|name| name.parse::<f64>().is_err()).map(str::to_owned);
+        let names: Vec<_> = std::iter::once(of("ordinal")?.as_i64()?.to_string()).chain(short).collect();
+        Some((id_of(one.id.as_ref()?), names.join(";")))
+    };
+    features.iter().filter_map(level).collect()
 }
 
 fn malformed(error: &geojson::Error) -> GeometryError {

@@ -4,7 +4,7 @@
 use super::feature::{Feature, Geometry, PropertyValue};
 
 /// The width of a door that has none of its own, m.
-const DOOR: f64 = 0.9;
+pub(super) const DOOR: f64 = 0.9;
 
 /// What becomes of a feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,9 @@ pub fn role(feature: &Feature, walkable: bool) -> Role {
         Some("room" | "level") => area(Role::Room),
         Some("corridor" | "area") => area(Role::Hall),
         Some("wall" | "column") => area(Role::Obstacle),
+        // Steps and other ways are where one walks.
+        _ if feature.property("highway").is_some() => Role::Nothing,
+        None if feature.property("room").is_some() => area(Role::Room),
         _ => plain,
     }
 }
@@ -64,13 +67,13 @@ pub fn may_be_door(properties: &[(String, PropertyValue)]) -> bool {
     })
 }
 
-/// The width of a door at a point, in metres; a number in the file is in its unit.
+/// The property `width` of a door or of stairs, in metres, or else the usual one; a number in the file is in its unit.
 ///
 /// # Errors
 /// A width that is no length.
-pub fn width(feature: &Feature, unit: f64) -> Result<f64, String> {
+pub fn width(feature: &Feature, unit: f64, (of, usual): (&str, f64)) -> Result<f64, String> {
     let found = match feature.property("width") {
-        None | Some(PropertyValue::Null) => return Ok(DOOR),
+        None | Some(PropertyValue::Null) => return Ok(usual),
         Some(PropertyValue::Number(width)) => Some(width * unit),
         Some(PropertyValue::Text(text)) => length(text, unit),
         Some(_) => None,
@@ -78,7 +81,7 @@ pub fn width(feature: &Feature, unit: f64) -> Result<f64, String> {
     let is_width = |width: &f64| *width > 0.0 && width.is_finite();
     found
         .filter(is_width)
-        .ok_or_else(|| "the `width` of a door must be a positive length, such as 0.9".into())
+        .ok_or_else(|| format!("the `width` of {of} must be a positive length, such as {usual}"))
 }
 
 /// A length as maps have it: a number, perhaps with a unit.

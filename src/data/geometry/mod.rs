@@ -1,4 +1,4 @@
-//! Plane geometry from `GeoJSON` (RFC 7946), WKT (OGC 06-103r4) and DXF, and what a floor plan makes of it.
+//! Plane geometry from `GeoJSON` (RFC 7946), OSM XML, WKT (OGC 06-103r4) and DXF, and what a floor plan makes of it.
 //!
 //! All formats take the same steps: a reader gives features and drops those that are not selected (`read`); their
 //! coordinates become metres of the scene (`placement`); their roles make barriers and doors of them (`plan`);
@@ -11,6 +11,7 @@ pub mod dxf;
 pub mod feature;
 pub mod geojson;
 pub mod indoor;
+pub mod osm;
 pub mod placement;
 pub mod plan;
 pub mod snap;
@@ -21,6 +22,7 @@ pub use drawing::{Drawing, Format, read};
 pub use dxf::read_dxf;
 pub use feature::{Feature, FilePlace, Geometry, GeometryError, PropertyValue, Select};
 pub use geojson::{read_geojson, select_geojson};
+pub use osm::read_osm;
 pub use placement::{Fault, Placement};
 pub use plan::{Form, Plan, plan};
 pub use snap::{Slips, is_crowded, slips, snap};

@@ -5,7 +5,7 @@
 
 use super::door::Door;
 use super::feature::{Feature, Geometry, GeometryError};
-use super::indoor::{Role, role, width};
+use super::indoor::{DOOR, Role, role, width};
 use crate::base::geometry::{Bounds, Polygon, Segment, Shape, Vec2, cross};
 
 /// Outlines nearer than this are one, m.
@@ -86,9 +86,14 @@ fn door(feature: &Feature, unit: f64) -> Result<Door, String> {
     let (place, name) = (feature.place.clone(), feature.name.clone());
     let has_level = feature.property("level").is_some();
     match &feature.shape {
-        Geometry::Point(at) => {
-            Ok(Door { place, name, at: *at, along: None, width: width(feature, unit)?, has_level })
-        }
+        Geometry::Point(at) => Ok(Door {
+            place,
+            name,
+            at: *at,
+            along: None,
+            width: width(feature, unit, ("a door", DOOR))?,
+            has_level,
+        }),
         Geometry::Line(points) => {
             let (first, last) = (points[0], points[points.len() - 1]);
             let (along, width) = (last - first, (last - first).norm());

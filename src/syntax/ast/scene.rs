@@ -100,6 +100,15 @@ pub enum SceneItem {
         /// Where.
         span: Span,
     },
+    /// `import "mall.osm" by level { ground = "0"; first = "1"; storey = 4 m }`: its levels follow as items of their own.
+    Storeys {
+        /// The import of each level, without its filter by level.
+        import: Box<SceneItem>,
+        /// The levels from the lowest one on, each with its name in the file.
+        levels: Vec<(Ident, Text)>,
+        /// How far floors lie apart.
+        storey: Option<Expr>,
+    },
 }
 
 impl SceneItem {

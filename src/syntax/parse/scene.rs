@@ -2,14 +2,24 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
-use crate::syntax::ast::{Expr, Field, Ident, SceneItem, ShapeExpr};
+use crate::base::decimal::Decimal;
+use crate::syntax::ast::{
+    BinaryOp, Expr, ExprKind, Field, Ident, Quantity, SceneItem, ShapeExpr, Text, Value,
+};
 
 impl Builder<'_> {
     pub(super) fn scene(&mut self, pair: Pair<'_>) -> Vec<SceneItem> {
-        match Parts::of(pair).part(Rule::block) {
-            Some(block) => self.block(&block, Rule::line_of_scene, &mut Self::scene_item),
-            None => Vec::new(),
+        let mut items = Vec::new();
+        if let Some(block) = Parts::of(pair).part(Rule::block) {
+            self.block(&block, Rule::line_of_scene, &mut |builder, part| {
+                let item = builder.scene_item(part)?;
+                let levels = levels_of(&item);
+                items.push(item);
+                items.extend(levels);
+                Some(())
+            });
         }
+        items
     }
 
     fn scene_item(&mut self, pair: Pair<'_>) -> Option<SceneItem> {
@@ -23,14 +33,15 @@ impl Builder<'_> {
             let filter = parts.part(Rule::expr).map(|filter| self.expr(filter));
             let called = parts.part(Rule::called).and_then(|called| Parts::of(called).part(Rule::name));
             let called = called.map(|name| self.ident(&name));
-            return Some(SceneItem::Import {
-                path,
-                walkable,
-                filter,
-                called,
-                fields: self.body(parts),
-                span,
-            });
+            let is_by_level = parts.part(Rule::by_level).is_some();
+            let fields = self.body(parts);
+            let (levels, storey, fields) =
+                if is_by_level { by_level(fields) } else { (Vec::new(), None, fields) };
+            let import = SceneItem::Import { path, walkable, filter, called, fields, span };
+            if !is_by_level {
+                return Some(import);
+            }
+            return Some(SceneItem::Storeys { import: Box::new(import), levels, storey });
         }
         if rule == Rule::periodic {
             let axis = self.ident(&parts.part(Rule::name)?);
@@ -138,11 +149,58 @@ fn within(level: &Ident, mut items: Vec<SceneItem>) -> Vec<SceneItem> {
             | SceneItem::Point { name, .. }
             | SceneItem::Line { name, .. }
             | SceneItem::Door { name, .. } => Some(name),
-            SceneItem::Level { .. } | SceneItem::Stairs { .. } | SceneItem::Periodic { .. } => None,
+            SceneItem::Level { .. }
+            | SceneItem::Stairs { .. }
+            | SceneItem::Periodic { .. }
+            | SceneItem::Storeys { .. } => None,
         };
         if let Some(name) = name {
             name.name = format!("{}.{}", level.name, name.name);
         }
     }
     items
+}
+
+/// The levels among the fields of an import by level, the height of a storey, and the fields of each import.
+fn by_level(written: Vec<Field>) -> (Vec<(Ident, Text)>, Option<Expr>, Vec<Field>) {
+    let (mut levels, mut storey, mut fields) = (Vec::new(), None, Vec::new());
+    for field in written {
+        match (field.name.name.as_str(), &field.value) {
+            ("storey", Value::Plain(expr)) if storey.is_none() => storey = Some(expr.clone()),
+            ("snap" | "unit" | "origin" | "projection", _) => fields.push(field),
+            (_, Value::Plain(Expr { kind: ExprKind::Text(text), span })) => {
+                levels.push((field.name, Text { value: text.clone(), span: *span }));
+            }
+            _ => fields.push(field),
+        }
+    }
+    (levels, storey, fields)
+}
+
+/// The levels that an import by level stands for: `level first { height = 1 * storey; import … where level == "1" }`.
+fn levels_of(item: &SceneItem) -> Vec<SceneItem> {
+    let SceneItem::Storeys { import, levels, storey } = item else { return Vec::new() };
+    let level = |(k, (name, text)): (usize, &(Ident, Text))| {
+        let at = |kind| Expr { kind, span: text.span };
+        let both = |op, a, b| at(ExprKind::Binary(op, Box::new(a), Box::new(b)));
+        let of = at(ExprKind::Name("level".into()));
+        let mut own = both(BinaryOp::Equal, of, at(ExprKind::Text(text.value.clone())));
+        let mut import = (**import).clone();
+        if let SceneItem::Import { filter, .. } = &mut import {
+            if let Some(written) = filter.take() {
+                own = both(BinaryOp::And, written, own);
+            }
+            *filter = Some(own);
+        }
+        let height = storey.as_ref().map(|storey| {
+            let number = Quantity { value: Decimal::whole(k as i64), unit: None };
+            let number = Expr { kind: ExprKind::Quantity(number), span: storey.span };
+            let product = ExprKind::Binary(BinaryOp::Times, Box::new(number), Box::new(storey.clone()));
+            let value = Value::Plain(Expr { kind: product, span: storey.span });
+            Field { name: Ident { name: "height".into(), span: storey.span }, value }
+        });
+        let items = within(name, vec![import]);
+        SceneItem::Level { name: name.clone(), fields: height.into_iter().collect(), items }
+    };
+    levels.iter().enumerate().map(level).collect()
 }

@@ -6,7 +6,8 @@ use crate::compile::scene::imports::{
     fields::{self, Import},
     filter::{self, Compared},
 };
-use crate::data::geometry::{self, Drawing, Fault, Format, Geometry, GeometryError, PropertyValue};
+use crate::data::geometry::{self, Drawing, Fault, Format, Geometry, GeometryError, PropertyValue, Select};
+use crate::syntax::ast::Text;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -16,15 +17,15 @@ use std::collections::BTreeSet;
 /// Most names of properties that a warning lists.
 const MOST_NAMES: usize = 8;
 /// The formats that are read.
-const FORMATS: &str =
-    "imports are GeoJSON (`.geojson`), WKT (`.wkt`) or DXF (`.dxf`); export other drawings as DXF";
+const FORMATS: &str = "imports are GeoJSON (`.geojson`), OSM (`.osm`), WKT (`.wkt`) or DXF (`.dxf`); export other drawings as DXF";
 /// Most features that a message names.
 const MOST_NAMED: usize = 5;
 
 /// A drawing that cannot lie where its coordinates say.
 pub(crate) fn misplaced<T>(context: &mut Context<'_>, import: &Import<'_>, fault: Fault) -> Lowered<T> {
     let span = import.path.span;
-    let is_local = import.fields.iter().any(|field| field.name.name == "projection");
+    let is_local = Format::of(&import.path.value) == Format::Osm
+        || import.fields.iter().any(|field| field.name.name == "projection");
     let unit_hint = |this: &Context<'_>, fits: Option<&str>| match fits {
         _ if is_local => "leave out `projection` for coordinates in metres, or select fewer features".into(),
         Some(unit) => {
@@ -95,7 +96,6 @@ fn of_another_type(context: &Context<'_>, compared: &Compared<'_>) -> Diagnostic
 pub(crate) fn drawing(
     context: &mut Context<'_>,
     import: &Import<'_>,
-    format: Format,
     unit: Option<f64>,
     files: &Files,
 ) -> Lowered<Drawing> {
@@ -123,29 +123,11 @@ pub(crate) fn drawing(
             }
         }
     };
-    let text = match files.get(&path.value) {
-        Ok(bytes) => text_of(bytes, format),
-        Err(reason) => return context.report(missing(span, &reason)),
-    };
-    let text = match text {
-        Ok(text) if text.trim().is_empty() => Err("the file is empty"),
-        text => text,
-    };
-    let end = path.value.rsplit_once('.').map_or("", |(_, end)| end);
-    let is_other = format == Format::GeoJson && !end.to_ascii_lowercase().ends_with("json");
-    let formats = |error: Diagnostic| if is_other { error.hint(FORMATS) } else { error };
-    let text = match text {
-        Ok(text) => text,
-        Err(fault) => return context.report(formats(error!(E0704, span, "{fault}"))),
-    };
-    let read = geometry::read(format, &text, unit, &mut select);
+    let read = read(context, path, unit, files, &mut select);
     if let Some(error) = wrong {
         return context.report(error);
     }
-    let drawing = match read {
-        Ok(drawing) => drawing,
-        Err(errors) => return context.report(formats(unreadable(span, &errors))),
-    };
+    let drawing = read?;
     for compared in compared.iter().filter(|compared| compared.name == "layer") {
         let PropertyValue::Text(layer) = &compared.value else { continue };
         if !drawing.layers.is_empty() && !drawing.layers.contains(layer) {
@@ -155,7 +137,8 @@ pub(crate) fn drawing(
             return context.report(error.label(format!("the drawing has {}", names.join(", "))));
         }
     }
-    if let Some(unlike) = compared.iter().find(|compared| !compared.fits && !compared.seen.is_empty()) {
+    let is_unlike = |one: &&Compared<'_>| !one.fits && !one.seen.is_empty() && !filter::is_by_level(one);
+    if let Some(unlike) = compared.iter().find(is_unlike) {
         return context.report(of_another_type(context, unlike));
     }
     // A property that no feature has equals nothing, and differs from everything.
@@ -188,6 +171,33 @@ pub(crate) fn drawing(
         }));
     }
     Ok(drawing)
+}
+
+/// The features of a file that are selected, or what is wrong with it.
+pub(crate) fn read(
+    context: &mut Context<'_>,
+    path: &Text,
+    unit: Option<f64>,
+    files: &Files,
+    select: &mut Select<'_>,
+) -> Lowered<Drawing> {
+    let (format, span) = (Format::of(&path.value), path.span);
+    let text = match files.get(&path.value) {
+        Ok(bytes) => text_of(bytes, format),
+        Err(reason) => return context.report(missing(span, &reason)),
+    };
+    let text = match text {
+        Ok(text) if text.trim().is_empty() => Err("the file is empty"),
+        text => text,
+    };
+    let end = path.value.rsplit_once('.').map_or("", |(_, end)| end);
+    let is_other = format == Format::GeoJson && !end.to_ascii_lowercase().ends_with("json");
+    let formats = |error: Diagnostic| if is_other { error.hint(FORMATS) } else { error };
+    let read = match text {
+        Ok(text) => geometry::read(format, &text, unit, select),
+        Err(fault) => return context.report(formats(error!(E0704, span, "{fault}"))),
+    };
+    read.or_else(|errors| context.report(formats(unreadable(span, &errors))))
 }
 
 fn listed(values: &[PropertyValue]) -> String {

@@ -3,6 +3,7 @@
 use crate::base::geometry::Vec2;
 use crate::compile::context::{Context, Locals, Lowered, symbols::unknown, typed::Typed};
 use crate::compile::dimension::Dimension;
+use crate::compile::scene::imports::filter;
 use crate::data::geometry::Format;
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Text, Value};
 use crate::syntax::codes::Code;
@@ -10,7 +11,7 @@ use crate::syntax::codes::Code;
 /// Within at most so many metres walls are joined.
 const WIDEST_SNAP: f64 = 1.0;
 /// The fields of an import.
-const FIELDS: [&str; 4] = ["snap", "unit", "origin", "projection"];
+pub(crate) const FIELDS: [&str; 4] = ["snap", "unit", "origin", "projection"];
 
 /// An import as written.
 pub(crate) struct Import<'a> {
@@ -34,7 +35,8 @@ pub(crate) struct Fields {
 
 /// The fields of an import as numbers.
 pub(crate) fn import_fields(context: &mut Context<'_>, import: &Import<'_>) -> Lowered<Fields> {
-    let mut found = Ok(Fields::default());
+    let is_local = Format::of(&import.path.value) == Format::Osm;
+    let mut found = Ok(Fields { is_local, ..Fields::default() });
     for (k, field) in import.fields.iter().enumerate() {
         let set = import_field(context, import.fields, k);
         found = match (found, set) {
@@ -115,6 +117,9 @@ pub(crate) fn rewritten(context: &Context<'_>, import: &Import<'_>, name: &str, 
         text += " as walkable";
     }
     if let Some(filter) = import.filter {
+        if filter::compared(filter).iter().any(filter::is_by_level) {
+            return format!("{name} = {value}");
+        }
         text += &format!(" where {}", context.text(filter.span));
     }
     let others = import.fields.iter().filter(|field| field.name.name != name);

@@ -138,16 +138,19 @@ fn values(expr: &Expr, (name, properties): Described<'_>) -> Result<Vec<Property
         property => of(property).into_iter().collect(),
     };
     if property == "level" {
-        found.extend([of("level"), of("repeat_on")].into_iter().flatten().flat_map(levels));
+        let found_on: Vec<String> =
+            ["level", "repeat_on"].iter().flat_map(|key| levels(properties, key)).collect();
+        found.extend(found_on.iter().cloned().map(PropertyValue::Text));
+        found.extend(found_on.iter().filter_map(|level| level.parse().ok()).map(PropertyValue::Number));
     }
     Ok(found)
 }
 
-/// The levels in a property of OSM, as texts and as numbers: `0;2` is two levels, and `0-2` is three.
-fn levels(value: PropertyValue) -> Vec<PropertyValue> {
-    let text = match value {
-        PropertyValue::Text(text) => text,
-        PropertyValue::Number(level) => level.to_string(),
+/// The levels in a property of OSM: `0;2` is two levels, and `0-2` is three.
+pub(crate) fn levels(properties: &[(String, PropertyValue)], key: &str) -> Vec<String> {
+    let text = match properties.iter().find(|(name, _)| name == key).map(|(_, value)| value) {
+        Some(PropertyValue::Text(text)) => text.clone(),
+        Some(PropertyValue::Number(level)) => level.to_string(),
         _ => return Vec::new(),
     };
     let mut found: Vec<String> = Vec::new();
@@ -160,9 +163,12 @@ fn levels(value: PropertyValue) -> Vec<PropertyValue> {
             None => found.push(part.to_owned()),
         }
     }
-    let numbers: Vec<_> =
-        found.iter().filter_map(|level| level.parse().ok()).map(PropertyValue::Number).collect();
-    found.into_iter().map(PropertyValue::Text).chain(numbers).collect()
+    found
+}
+
+/// Whether an import by level made a comparison: it has no place of its own.
+pub(crate) fn is_by_level(compared: &Compared<'_>) -> bool {
+    compared.spans[0] == compared.spans[1]
 }
 
 fn wrong(expr: &Expr) -> Diagnostic {

@@ -3,6 +3,7 @@
 pub(crate) mod drawing;
 pub(crate) mod fields;
 pub(crate) mod filter;
+pub(crate) mod levels;
 
 use crate::compile::context::{
     Context, Lowered,
@@ -11,12 +12,13 @@ use crate::compile::context::{
 use crate::compile::files::Files;
 use crate::compile::scene::imports::{
     drawing::{shown, unreadable},
-    fields::Import,
+    fields::{Fields, Import},
 };
 
 use crate::base::geometry::{Segment, Shape, Vec2};
 use crate::data::geometry::{
-    self, Door, Feature, Form, Format, Geometry, Opened, Placement, placement::middle, plan::TOUCHING,
+    self, Door, Drawing, Feature, Form, Format, Geometry, Opened, Placement, placement::middle,
+    plan::TOUCHING,
 };
 use crate::model::{Barrier, Obstacle};
 use crate::syntax::codes::Code;
@@ -29,12 +31,17 @@ const NEAR_MISS: f64 = 0.05;
 const PASSABLE: f64 = 0.5;
 
 /// Imports all files of a scene. Doors open the walls of all of them.
-pub(crate) fn import_all(context: &mut Context<'_>, imports: &[Import<'_>], files: &Files) {
-    let (first, mut middle) = (context.scene.barriers.len(), None);
+pub(crate) fn import_all(
+    context: &mut Context<'_>,
+    imports: &[Import<'_>],
+    files: &Files,
+    middle: &mut Option<Vec2>,
+) {
+    let first = context.scene.barriers.len();
     let mut found: Vec<(&Import<'_>, Vec<Door>)> = Vec::new();
     for import in imports {
         let start = context.scene.barriers.len();
-        let read = read_import(context, import, files, &mut middle);
+        let read = read_import(context, import, files, middle);
         if let Some(plan) = plan_of(context, import) {
             let rooms = read.as_ref().ok().map(|(_, rooms)| rooms.clone());
             plan.parts = rooms;
@@ -117,27 +124,8 @@ fn read_import(
     let span = import.path.span;
     let format = Format::of(&import.path.value);
     let fields = fields::import_fields(context, import)?;
-    let mut drawing = drawing::drawing(context, import, format, fields.unit, files)?;
-    let placement = if fields.is_local {
-        if fields.origin.is_none() && middle_of_first.is_none() {
-            *middle_of_first = middle(&drawing.features);
-        }
-        Placement::Local(fields.origin.or(*middle_of_first).unwrap_or_default())
-    } else {
-        let is_stated = format == Format::Dxf || fields.unit.is_some() || fields.origin.is_some();
-        let unit = match drawing.unit.or(fields.unit) {
-            None if format == Format::Dxf => {
-                let error = error!(E0711, span, "the drawing does not state its unit of length");
-                let written = fields::rewritten(context, import, "unit", "1 mm");
-                return context.report(error.hint(format!("write the unit, for example `{written}`")));
-            }
-            unit => unit.unwrap_or(1.0),
-        };
-        Placement::Plane { unit, origin: fields.origin.unwrap_or_default(), is_stated }
-    };
-    if let Err(fault) = placement.place(&mut drawing.features) {
-        return drawing::misplaced(context, import, fault);
-    }
+    let mut drawing = drawing::drawing(context, import, fields.unit, files)?;
+    let placement = place(context, import, &fields, &mut drawing, middle_of_first)?;
     let touching = fields.snap.unwrap_or(TOUCHING);
     let plan = match geometry::plan(&drawing.features, (placement.unit(), touching), import.walkable) {
         Ok(plan) => plan,
@@ -169,6 +157,38 @@ fn read_import(
     };
     join_walls(context, import, first, fields.snap, implied);
     Ok((plan.doors, rooms(&drawing.features)))
+}
+
+/// Moves a drawing to its place in the scene.
+fn place(
+    context: &mut Context<'_>,
+    import: &Import<'_>,
+    fields: &Fields,
+    drawing: &mut Drawing,
+    middle_of_first: &mut Option<Vec2>,
+) -> Lowered<Placement> {
+    let placement = if fields.is_local {
+        if fields.origin.is_none() && middle_of_first.is_none() {
+            *middle_of_first = middle(&drawing.features);
+        }
+        Placement::Local(fields.origin.or(*middle_of_first).unwrap_or_default())
+    } else {
+        let format = Format::of(&import.path.value);
+        let is_stated = format == Format::Dxf || fields.unit.is_some() || fields.origin.is_some();
+        let unit = match drawing.unit.or(fields.unit) {
+            None if format == Format::Dxf => {
+                let error = error!(E0711, import.path.span, "the drawing does not state its unit of length");
+                let written = fields::rewritten(context, import, "unit", "1 mm");
+                return context.report(error.hint(format!("write the unit, for example `{written}`")));
+            }
+            unit => unit.unwrap_or(1.0),
+        };
+        Placement::Plane { unit, origin: fields.origin.unwrap_or_default(), is_stated }
+    };
+    match placement.place(&mut drawing.features) {
+        Ok(()) => Ok(placement),
+        Err(fault) => drawing::misplaced(context, import, fault),
+    }
 }
 
 /// Joins the walls of an import that nearly touch, or reports them. `implied` is the distance of an import without
