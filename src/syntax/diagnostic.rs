@@ -66,6 +66,8 @@ pub enum About {
     Moves,
     /// More people than there is room for.
     Crowd,
+    /// A door without a wall.
+    Door,
     /// Values of a parameter that make no difference.
     Idle,
 }

@@ -198,7 +198,8 @@ impl<'i> Broken<'i> {
         let of_moves = one.about == About::Moves && self.moves;
         // With barriers that were not read there is less room for many, not more.
         let is_crowd = one.about == About::Crowd;
-        let of_scenery = INSIDE.contains(&one.code) && self.scenery && !is_crowd;
+        let needs_barriers = INSIDE.contains(&one.code) && !is_crowd || one.about == About::Door;
+        let of_scenery = needs_barriers && self.scenery;
         // The room that bodies need is unknown if a part of them was not read.
         let of_bodies = is_crowd && scenario && (self.fields || self.any_name);
         // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.

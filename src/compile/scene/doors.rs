@@ -9,6 +9,7 @@ use crate::data::geometry;
 use crate::model::{self, Agent, Barrier, BarrierId, Bool, Law, Obstacle, Shut, door::MOST_DOORS};
 use crate::syntax::ast::{Field, Ident, Value};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
 
 /// A door between two walls reaches as near as this to them, m.
 const NEAR: f64 = 0.05;
@@ -112,7 +113,7 @@ pub(crate) fn set(context: &mut Context<'_>, doors: &[Door]) -> Vec<model::Door>
         if opened <= HAIR && !is_between {
             let error = error!(E0401, name.span, "the door `{text}` lies on no wall";
                 hint: "both of its ends must lie on one straight wall, or reach the walls beside it");
-            context.note(error);
+            context.note(error.about(About::Door));
         } else if opened > HAIR && opened < width - HAIR {
             let error = error!(E0401, name.span, "the door `{text}` is {width:.2} m wide, and its wall has {opened:.2} m there";
                 hint: "move its ends onto the wall");
