@@ -16,7 +16,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 31] = [
+const PAIRS: [(&str, &str); 32] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -42,6 +42,7 @@ const PAIRS: [(&str, &str); 31] = [
     pair!("sensors"),
     pair!("square"),
     pair!("station"),
+    pair!("storeys"),
     pair!("table1"),
     pair!("tandem"),
     pair!("plaza"),
