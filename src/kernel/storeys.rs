@@ -7,7 +7,7 @@
 use super::driver;
 use super::plan::Occasion;
 use super::program::Program;
-use super::state::{Layout, Slot, State};
+use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{Lanes, Mask};
 use crate::model::{Parameter, Portal, Scene, Storeys};
@@ -31,6 +31,44 @@ struct Crossing {
     share: f64,
     /// How far behind it, m.
     beyond: f64,
+}
+
+/// Who may stand where somebody lands.
+struct Landings {
+    /// Who was near the landing of each portal that is crossed, when the step ended.
+    near: Vec<Vec<Slot>>,
+    /// Who has crossed a line since.
+    newcomers: Vec<Slot>,
+}
+
+impl Landings {
+    /// Of the crossings of a step.
+    fn of(storeys: &Storeys, state: &State, crossings: &[Crossing]) -> Self {
+        let mut near = vec![Vec::new(); storeys.portals.len()];
+        // The portals that lead to each island, and how far from their lines somebody can be touched there.
+        let mut into: Vec<Vec<(usize, f64)>> = vec![Vec::new(); storeys.islands.len()];
+        for one in crossings {
+            let reach = one.beyond + one.slot.of(&state.bodies[Parameter::Radius]);
+            let known = &mut into[storeys.portals[one.portal].islands[1] as usize];
+            match known.iter_mut().find(|(portal, _)| *portal == one.portal) {
+                Some((_, most)) => *most = if reach > *most { reach } else { *most },
+                None => known.push((one.portal, reach)),
+            }
+        }
+        for (block, present) in state.present.iter().enumerate() {
+            for lane in present.iter() {
+                let slot = Slot { block, lane };
+                for (portal, reach) in &into[slot.of(&state.whereabouts.island) as usize] {
+                    let Portal { landing, onward, .. } = &storeys.portals[*portal];
+                    let behind = (state.position(slot) - landing.a).dot(onward);
+                    if behind < reach + slot.of(&state.bodies[Parameter::Radius]) {
+                        near[*portal].push(slot);
+                    }
+                }
+            }
+        }
+        Self { near, newcomers: Vec::new() }
+    }
 }
 
 /// Whether there is room beyond a line.
@@ -107,14 +145,20 @@ impl Stairwells {
                 }
             }
         }
+        if crossings.is_empty() {
+            return;
+        }
+        let mut landings = Landings::of(&self.storeys, state, &crossings);
         let (mut done, mut carried) = (vec![false; crossings.len()], false);
         for k in 0..crossings.len() {
             if done[k] {
                 continue;
             }
-            let go_on: &[usize] = match self.room(state, (&crossings, &done), k) {
+            let go_on: &[usize] = match self.room(state, &landings, (&crossings, &done), k) {
                 Room::Free => &[k],
-                Room::Against(other) if self.passes(state, (&crossings, &done), (k, other)) => &[k, other],
+                Room::Against(other) if self.passes(state, &landings, (&crossings, &done), (k, other)) => {
+                    &[k, other]
+                }
                 Room::Against(_) | Room::Taken => &[],
             };
             if go_on.is_empty() {
@@ -123,6 +167,7 @@ impl Stairwells {
             done[k] = true;
             for &one in go_on {
                 self.carry_on(program, state, &crossings[one]);
+                landings.newcomers.push(crossings[one].slot);
                 (done[one], carried) = (true, true);
             }
         }
@@ -157,8 +202,14 @@ impl Stairwells {
     }
 
     /// Whether the one in somebody's way is free to pass, but for that one.
-    fn passes(&self, state: &State, crossings: (&[Crossing], &[bool]), (one, other): (usize, usize)) -> bool {
-        match self.room(state, crossings, other) {
+    fn passes(
+        &self,
+        state: &State,
+        landings: &Landings,
+        crossings: (&[Crossing], &[bool]),
+        (one, other): (usize, usize),
+    ) -> bool {
+        match self.room(state, landings, crossings, other) {
             Room::Free => true,
             Room::Against(there) => there == one,
             Room::Taken => false,
@@ -166,29 +217,31 @@ impl Stairwells {
     }
 
     /// Whether there is room where somebody would go on.
-    fn room(&self, state: &State, (all, done): (&[Crossing], &[bool]), k: usize) -> Room {
+    fn room(
+        &self,
+        state: &State,
+        landings: &Landings,
+        (all, done): (&[Crossing], &[bool]),
+        k: usize,
+    ) -> Room {
         let one = &all[k];
         let (at, radius) = (self.landing(state, one), one.slot.of(&state.bodies[Parameter::Radius]));
         let island = f64::from(self.storeys.portals[one.portal].islands[1]);
-        let slots = match state.layout {
-            Layout::Trials => Mask::lane(one.slot.lane),
-            Layout::Agents => Mask::ALL,
+        let trial = state.layout.trial_of(one.slot.lane);
+        let is_there = |slot: &&Slot| {
+            slot.of(&state.whereabouts.island) == island && state.layout.trial_of(slot.lane) == trial
         };
         let mut found = Room::Free;
-        for (block, there) in state.whereabouts.island.iter().enumerate() {
-            let near = there.compare(Lanes::splat(island), |a, b| a == b) & slots & state.present[block];
-            for lane in near.iter() {
-                let slot = Slot { block, lane };
-                let touch = radius + slot.of(&state.bodies[Parameter::Radius]);
-                if (state.position(slot) - at).norm_squared() < touch * touch {
-                    let back = Storeys::reverse(one.portal);
-                    let is_there = |other: &Crossing| other.slot == slot && other.portal == back;
-                    let other = all.iter().position(is_there).filter(|other| !done[*other]);
-                    found = match (found, other) {
-                        (Room::Free, Some(other)) => Room::Against(other),
-                        _ => return Room::Taken,
-                    };
-                }
+        for &slot in landings.near[one.portal].iter().chain(&landings.newcomers).filter(is_there) {
+            let touch = radius + slot.of(&state.bodies[Parameter::Radius]);
+            if (state.position(slot) - at).norm_squared() < touch * touch {
+                let back = Storeys::reverse(one.portal);
+                let comes = |other: &Crossing| other.slot == slot && other.portal == back;
+                let other = all.iter().position(comes).filter(|other| !done[*other]);
+                found = match (found, other) {
+                    (Room::Free, Some(other)) => Room::Against(other),
+                    _ => return Room::Taken,
+                };
             }
         }
         found

@@ -44,8 +44,14 @@ impl Atlas {
         let behind = known.get_or_init(|| self.times(goal, radius, climbs));
         for number in storeys.out_of(here).filter(|number| behind[*number].is_finite()) {
             let portal = &storeys.portals[number];
-            let Some(way) = island.way(from, &Goal::Point(middle(&portal.line)), radius) else { continue };
-            let time = way.length * slowness(portal.approach, climbs) + behind[number];
+            let (to, slowness) = (middle(&portal.line), slowness(portal.approach, climbs));
+            // No way is shorter than the straight line.
+            let least = (to - from).norm() * slowness + behind[number];
+            if best.as_ref().is_some_and(|best| best.0 < least) {
+                continue;
+            }
+            let Some(way) = island.way(from, &Goal::Point(to), radius) else { continue };
+            let time = way.length * slowness + behind[number];
             if best.as_ref().is_none_or(|best| time < best.0) {
                 best = Some((time, way, Some(number)));
             }
