@@ -25,7 +25,7 @@ pub struct Settings {
 
 impl Settings {
     fn options(&self) -> Options {
-        let mut options = Options::default().seed(self.seed).evidence(self.evidence);
+        let mut options = Options::default().seed(self.seed).evidence(self.evidence).within(prepared);
         if let Some(threads) = self.threads {
             options = options.threads(threads);
         }
@@ -37,6 +37,11 @@ impl Settings {
         }
         self.only.iter().fold(options, |options, one| options.only(one))
     }
+}
+
+/// Gives a thread its state of the interpreter once, instead of for each question to a driver.
+fn prepared(work: &mut (dyn FnMut() + Send)) {
+    Python::attach(|py| py.detach(work));
 }
 
 /// What the thread that samples tells.

@@ -2,14 +2,14 @@
 
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
-use crate::engine::{Budget, Fault, Threads};
+use crate::engine::{Budget, Fault, Threads, Within};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::trials::budget::DEFAULT_TRIALS;
 use std::time::Duration;
 
 /// Options of a check. Unless a timeout is set, results are a function of the texts, the seed and the numbers of trials.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Options {
     pub(super) seed: u64,
     threads: Option<usize>,
@@ -17,6 +17,7 @@ pub struct Options {
     timeout: Option<Duration>,
     only: Vec<String>,
     pub(super) evidence: bool,
+    within: Option<Within>,
 }
 
 impl Default for Options {
@@ -29,6 +30,7 @@ impl Default for Options {
             timeout: None,
             only: Vec::new(),
             evidence: false,
+            within: None,
         }
     }
 }
@@ -44,6 +46,13 @@ impl Options {
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads: Some(threads), ..self }
+    }
+
+    /// Has each thread run its trials within something that gets it ready for drivers of your own, such as the state of an
+    /// interpreter, which would else be made for each question.
+    #[must_use]
+    pub fn within(self, within: Within) -> Self {
+        Self { within: Some(within), ..self }
     }
 
     /// Sets the largest number of trials of one query.
@@ -77,7 +86,8 @@ impl Options {
     }
 
     pub(super) fn executor(&self) -> Result<Threads, Fault> {
-        Threads::new(self.threads).map_err(|error| Fault::Threads(error.to_string()))
+        let threads = Threads::new(self.threads).map_err(|error| Fault::Threads(error.to_string()))?;
+        Ok(threads.within(self.within))
     }
 
     /// The numbers of the queries that are asked; empty for all.

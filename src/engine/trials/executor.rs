@@ -222,9 +222,13 @@ impl<'s> Job<'s> {
     }
 }
 
+/// Runs some work on the thread that it is called on, after getting that ready for drivers from outside.
+pub type Within = fn(&mut (dyn FnMut() + Send));
+
 /// The threads of this machine.
 pub struct Threads {
     pool: rayon::ThreadPool,
+    within: Option<Within>,
 }
 
 impl Threads {
@@ -232,7 +236,13 @@ impl Threads {
     pub fn new(threads: Option<usize>) -> Result<Self, rayon::ThreadPoolBuildError> {
         let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let threads = threads.unwrap_or_else(cores).max(1);
-        Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()? })
+        Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()?, within: None })
+    }
+
+    /// The same threads, each of which runs its trials within something.
+    #[must_use]
+    pub fn within(self, within: Option<Within>) -> Self {
+        Self { within, ..self }
     }
 
     /// Does some work on so many of them, while the others help: they take what those share, and wait for it awake, because
@@ -325,6 +335,12 @@ impl Threads {
             tasks
                 .map(|(k, task)| if is_due(k) { task.work(budget, helpers) } else { Ok(Finished::default()) })
                 .collect()
+        };
+        let work = || {
+            let Some(within) = self.within else { return work() };
+            let mut found = Ok(Vec::new());
+            within(&mut || found = work());
+            found
         };
         let results: Vec<Result<Vec<Finished>, Invalid>> =
             if helpers > 1 && parts.iter().any(|(job, _)| job.prepared.program.is_large()) {
