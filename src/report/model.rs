@@ -2,7 +2,7 @@
 
 use super::behaviours;
 use super::number::counted;
-use super::scenery::{self, level, own, place, point, shape};
+use super::scenery::{self, area_on, place, point};
 use crate::base::geometry::Vec2;
 use crate::base::tick::Clock;
 use crate::compile::Written;
@@ -205,11 +205,7 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     }
     let place = match &agent.start.position {
         Position::Point(p) => place(&scenario.scene, *p),
-        Position::Within(s) => format!(
-            "anywhere in {}{}",
-            level(&scenario.scene, s.inner_point()),
-            shape(&own(&scenario.scene, s))
-        ),
+        Position::Within(s) => format!("anywhere in {}", area_on(&scenario.scene, s)),
         Position::Near { agent, within } => {
             format!("within {} m of {}", number(*within), scenario.agents[agent.0 as usize].name)
         }

@@ -26,11 +26,11 @@ pub(super) fn scene(scenario: &Scenario) -> String {
                 let length = number(segments.iter().map(Segment::length).sum());
                 writeln!(out, "  wall{name}: {}, {length} m", counted(segments.len() as u64, "segment"))
             }
-            Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(&own(scene, solid))),
+            Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", area(scene, solid)),
         };
     }
     for region in scenario.scene.regions.iter().filter(|region| region.is_declared()) {
-        let _ = writeln!(out, "  region {}: {}", region.name, shape(&own(scene, &region.shape)));
+        let _ = writeln!(out, "  region {}: {}", region.name, area(scene, &region.shape));
     }
     for (name, at) in &scenario.scene.points {
         let _ =
@@ -68,7 +68,7 @@ fn storeys(out: &mut String, scene: &Scene) {
 }
 
 /// The name of the level on which a place lies, with a blank; nothing without levels.
-pub(super) fn level(scene: &Scene, p: Vec2) -> String {
+fn level(scene: &Scene, p: Vec2) -> String {
     scene.storeys.local(p).map_or(String::new(), |(island, _)| format!("{} ", island.name))
 }
 
@@ -77,16 +77,24 @@ pub(super) fn place(scene: &Scene, p: Vec2) -> String {
     format!("{}{}", level(scene, p), point(scene.storeys.local(p).map_or(p, |(_, own)| own)))
 }
 
-/// A shape in the coordinates of its level.
-pub(super) fn own(scene: &Scene, shape: &Shape) -> Shape {
+/// A shape in the coordinates of its levels, which are named where there are several.
+fn area(scene: &Scene, all: &Shape) -> String {
+    let parts = all.parts();
+    let is_elsewhere = |part: &Shape| scene.storeys.separate(part.inner_point(), parts[0].inner_point());
+    let has_several = parts.iter().any(is_elsewhere);
     let own = |part: &Shape| {
         let at = part.inner_point();
-        scene.storeys.local(at).map_or_else(|| part.clone(), |(_, own)| part.moved(own - at))
+        let moved = scene.storeys.local(at).map_or_else(|| part.clone(), |(_, own)| part.moved(own - at));
+        let level = if has_several { level(scene, at) } else { String::new() };
+        level + &shape(&moved)
     };
-    match shape {
-        Shape::Parts(parts) => Shape::Parts(parts.iter().map(own).collect()),
-        part => own(part),
-    }
+    parts.iter().map(own).collect::<Vec<_>>().join(", ")
+}
+
+/// A shape with its level.
+pub(super) fn area_on(scene: &Scene, shape: &Shape) -> String {
+    let (area, level) = (area(scene, shape), level(scene, shape.inner_point()));
+    if area.starts_with(&level) { area } else { level + &area }
 }
 
 /// A point, in m.

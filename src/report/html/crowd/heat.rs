@@ -64,7 +64,14 @@ impl Grid {
         Self { low, side, columns, cells: vec![Cell::default(); columns * rows] }
     }
 
+    /// The cell of a place; none of a place on another level.
     fn at(&mut self, place: Vec2) -> Option<&mut Cell> {
+        if place.x < self.low.x
+            || place.y < self.low.y
+            || place.x > self.low.x + self.columns as f64 * self.side
+        {
+            return None;
+        }
         let [column, row] = [0, 1].map(|axis| ((place[axis] - self.low[axis]) / self.side) as usize);
         self.cells.get_mut(row * self.columns + column.min(self.columns - 1))
     }
@@ -117,6 +124,7 @@ pub(super) fn figures(plan: &Plan, traces: &[&Trace], moments: &[Moment]) -> Vec
     let scale = 1.0 / (grid.side * grid.side * time);
     let side = plain(grid.side);
     let map = |title: &str, unit: &str, said: &str, value: &dyn Fn(&Cell) -> f64| {
+        let title = &on_level(title, plan);
         let svg = drawn(plan, &grid, (title, unit), value)?;
         Some(Figure { caption: format!("{title}: {said} Cells of {side} m."), svg, is_wide: plan.is_wide() })
     };
@@ -153,12 +161,18 @@ fn time_to_leave(plan: &Plan, traces: &[&Trace]) -> Option<Figure> {
         }
     }
     let mean = |cell: &Cell| if cell.leavers > 0.0 { cell.leaving / cell.leavers } else { 0.0 };
-    let svg = drawn(plan, &grid, ("Time to leave", "s"), &mean)?;
+    let title = on_level("Time to leave", plan);
+    let svg = drawn(plan, &grid, (&title, "s"), &mean)?;
     let caption = format!(
-        "Time to leave: the mean time of those who started in a cell and left. Cells of {} m.",
+        "{title}: the mean time of those who started in a cell and left. Cells of {} m.",
         plain(grid.side)
     );
     Some(Figure { caption, svg, is_wide: plan.is_wide() })
+}
+
+/// A title, with the level or the stairs.
+fn on_level(title: &str, plan: &Plan) -> String {
+    if plan.name.is_empty() { title.to_owned() } else { format!("{title} on {}", plan.name) }
 }
 
 /// A round width of a shade, such that all shades reach a number.

@@ -14,6 +14,7 @@ use crate::base::tick::Clock;
 use crate::engine::outcome::CallResult;
 use crate::engine::traces::Trace;
 use crate::kernel::Voronoi;
+use crate::model::Scene;
 use crate::report::html::table::Table;
 use crate::report::number::{count, counted, duration};
 use crate::report::phrase::settings;
@@ -30,6 +31,8 @@ const CROWD: usize = 8;
 /// So many scenes of a sweep, and so many lines of a scene, are shown.
 const MOST_SCENES: usize = 2;
 const MOST_LINES: usize = 8;
+/// So many levels and stairs have heat maps of their own.
+const MOST_ISLANDS: usize = 4;
 
 /// The figures of one scene.
 #[derive(Clone, Debug, Default)]
@@ -77,15 +80,17 @@ fn is_crowd(traces: &[&Trace]) -> bool {
 
 fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     let scene = &traces[0].scenario.scene;
-    let plan = Plan::of(scene, traces)?;
-    let (mut figures, mut tables) = (Vec::new(), Vec::new());
+    let whole = Plan::of(scene, None, traces)?;
+    let (mut figures, mut tables, mut unmapped) = (Vec::new(), Vec::new(), 0);
     let lines = scene.lines.iter().take(MOST_LINES).map(|line| passage::figure(line, traces));
     if is_crowd(traces) {
         let moments = moments::moments(&Voronoi::new(scene), traces.iter().map(|trace| &trace.motion));
-        figures.extend(heat::figures(&plan, traces, &moments));
+        let (plans, others) = plans(scene, whole, traces, &moments);
+        figures.extend(plans.iter().flat_map(|plan| heat::figures(plan, traces, &moments)));
+        unmapped = others;
         figures.extend(lines);
         figures.extend(speed_density(&moments));
-        tables = vec![exits::table(traces), dense::table(&moments, traces.len())];
+        tables = vec![exits::table(traces), dense::table(scene, &moments, traces.len())];
     } else {
         figures.extend(lines);
     }
@@ -99,12 +104,37 @@ fn crowd(run: &CallResult, traces: &[&Trace]) -> Option<Crowd> {
     if more > 0 {
         note += &format!(" Left out: {}.", counted(more as u64, "line"));
     }
+    if unmapped > 0 {
+        let all = scene.storeys.islands.len();
+        note += &format!(" Left out: the maps of {unmapped} of {all} levels and stairs, with fewer people.");
+    }
     let result = shown.and_then(|shown| run.results.get(shown.result));
     if tables.last().is_some_and(|dense| dense.rows.is_empty()) {
         note += &format!(" Nowhere did two or more people stand closer than {} per m².", dense::CLOSE);
     }
     tables.retain(|table| !table.rows.is_empty());
     Some(Crowd { head: result.map_or(String::new(), settings), note, tables, figures })
+}
+
+/// The plans that have heat maps: of the whole scene, or of the levels and stairs on which people spent the most time; and how
+/// many others people were on.
+fn plans(scene: &Scene, whole: Plan, traces: &[&Trace], moments: &[Moment]) -> (Vec<Plan>, usize) {
+    let storeys = &scene.storeys;
+    if storeys.are_none() {
+        return (vec![whole], 0);
+    }
+    let mut seconds = vec![0.0; storeys.islands.len()];
+    for moment in moments {
+        for (at, _) in &moment.people {
+            seconds[storeys.island_at(*at)] += moment.seconds;
+        }
+    }
+    let mut shown: Vec<usize> = (0..seconds.len()).filter(|island| seconds[*island] > 0.0).collect();
+    shown.sort_by(|a, b| seconds[*b].total_cmp(&seconds[*a]));
+    let others = shown.split_off(shown.len().min(MOST_ISLANDS)).len();
+    shown.sort_unstable();
+    let plans = shown.into_iter().filter_map(|island| Plan::of(scene, Some(island), traces));
+    (plans.collect(), others)
 }
 
 // Speed against density: a dot for each second of each trace. The density is that of the area that people occupy: their

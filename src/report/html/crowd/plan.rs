@@ -2,7 +2,7 @@
 
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::engine::traces::Trace;
-use crate::model::Scene;
+use crate::model::{Scene, storeys::APART};
 use crate::report::number::plain;
 use std::fmt::Write as _;
 
@@ -17,6 +17,8 @@ const LARGE: f64 = 12.0;
 /// A scene and where people were in it.
 #[derive(Debug)]
 pub(super) struct Plan {
+    /// The level or the stairs that it is of; empty without levels.
+    pub(super) name: String,
     /// Around all places, m.
     walked: Bounds,
     /// Around the scene, too, m.
@@ -28,12 +30,16 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// The plan of some traces in a scene; none where nobody was there.
-    pub(super) fn of(scene: &Scene, traces: &[&Trace]) -> Option<Self> {
+    /// The plan of some traces in a scene, or on one island of it; none where nobody was there.
+    pub(super) fn of(scene: &Scene, island: Option<usize>, traces: &[&Trace]) -> Option<Self> {
+        let of_island = island.map(|island| (scene.island(island), &scene.storeys.islands[island]));
+        let (scene, island) =
+            of_island.as_ref().map_or((scene, None), |(scene, island)| (scene, Some(*island)));
         let tracks = traces.iter().flat_map(|trace| &trace.motion.tracks);
         let points = tracks.flat_map(|track| &track.points);
         let places = points.map(|[x, y]| Vec2::new(f64::from(*x), f64::from(*y)) / 1000.0);
-        let walked = Bounds::around(places)?;
+        let is_here = |p: &Vec2| island.is_none_or(|island| island.bounds.distance(*p) < 0.5 * APART);
+        let walked = Bounds::around(places.filter(is_here))?;
         let barriers = scene.barriers.iter().filter_map(|barrier| barrier.obstacle.bounds());
         let lines = scene.lines.iter().filter_map(|line| Bounds::around([line.segment.a, line.segment.b]));
         let corners = barriers.chain(lines).chain([walked]).flat_map(|bounds| [bounds.low, bounds.high]);
@@ -44,7 +50,8 @@ impl Plan {
         let size = bounds.high - bounds.low;
         let width = if size.x > LARGE { WIDE } else { WIDTH };
         let scale = (width / size.x).min(MOST_HEIGHT / size.y);
-        let mut plan = Self { walked, bounds, scale, barriers: String::new() };
+        let name = island.map_or(String::new(), |island| island.name.clone());
+        let mut plan = Self { name, walked, bounds, scale, barriers: String::new() };
         plan.barriers = plan.drawn(scene);
         Some(plan)
     }

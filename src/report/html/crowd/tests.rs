@@ -1,9 +1,9 @@
 //! The figures of crowds: what they count, and that they stay small and in one piece.
 
 use super::*;
-use crate::base::geometry::{Segment, Vec2};
+use crate::base::geometry::{Bounds, Segment, Vec2};
 use crate::engine::traces::{Walk, recorded};
-use crate::model::{Line, Scene};
+use crate::model::{Island, Line, Scene, Storeys};
 
 /// Somebody with a place every 0.1 s.
 fn walk(k: usize, frames: usize, at: impl Fn(f64) -> (f64, f64)) -> Walk {
@@ -151,4 +151,35 @@ fn people_who_left_are_counted_by_exit() {
     // In a recording people are only not seen any more.
     let (crowds, _) = super::crowds(&CallResult::default(), &[recorded("r", scene, &walks).unwrap()]);
     assert!(crowds[0].tables.is_empty());
+}
+
+#[test]
+fn each_level_has_heat_maps_of_its_own_people() {
+    let island = |name: &str, x: f64| Island {
+        name: name.to_owned(),
+        origin: Vec2::new(x, 0.0),
+        bounds: Bounds { low: Vec2::new(x, 0.0), high: Vec2::new(x + 10.0, 10.0) },
+        height: Some(x),
+    };
+    let names = ["a", "b", "c", "d", "e", "f"];
+    let islands: Vec<Island> =
+        names.iter().zip(0..).map(|(name, k)| island(name, 50.0 * f64::from(k))).collect();
+    let storeys = Storeys { islands, portals: Vec::new() };
+    // Two people more on each level than on the one before, but none on the last; the fewest have no map.
+    let people = (0..5).flat_map(|level| (0..=2 * level).map(move |k| (f64::from(level), f64::from(k))));
+    let walks: Vec<Walk> = people
+        .enumerate()
+        .map(|(k, (level, y))| walk(k, 21, move |time| (50.0 * level + 1.0 + time, 1.0 + y)))
+        .collect();
+    let (crowds, _) = crowds(&CallResult::default(), &[trial(Scene { storeys, ..Scene::default() }, &walks)]);
+    let captions = |of: &str| -> Vec<String> {
+        let all =
+            crowds[0].figures.iter().filter_map(|figure| figure.caption.split_once(&format!("{of} on ")));
+        all.map(|(_, rest)| rest.split(':').next().unwrap_or_default().to_owned()).collect()
+    };
+    assert_eq!(captions("Presence"), ["b", "c", "d", "e"]);
+    assert!(crowds[0].note.contains("the maps of 1 of 6 levels and stairs"), "{}", crowds[0].note);
+    // On level b there were three people for two seconds, 0.1 s apart.
+    let first = &crowds[0].figures[0];
+    assert!(first.svg.matches("<title>").count() >= 3, "{}", first.svg);
 }
