@@ -78,6 +78,28 @@ fn on_stairs_one_walks_as_fast_as_the_table_says() {
 }
 
 #[test]
+fn planned_walkers_go_over_stairs_without_slowing_down_at_their_lines() {
+    let me =
+        "kind planner: planned { limit speed = 1.2 m/s; limit acceleration = 1 m/s^2; profile = optimal }
+        agent me: planner { at = first (24, 8); route = first (20, 5) -> ground.here -> ground.exit }";
+    let house = house("run = 6 m; down = 0.5", me);
+    let walk = walk(&model(&house), 0, "me");
+    let is_on_stairs = |at: &Vec2| at.y > 20.0;
+    let on_stairs: Vec<f64> = walk.iter().filter(|(_, at)| is_on_stairs(at)).map(|(time, _)| *time).collect();
+    let time = on_stairs.last().unwrap() - on_stairs[0];
+    assert!((time - 6.0 / 0.6).abs() < 0.3, "{time}");
+    let first = walk.iter().position(|(_, at)| is_on_stairs(at)).unwrap();
+    let before = (walk[first - 1].1 - walk[first - 11].1).norm() / 0.5;
+    assert!((before - 1.2).abs() < 0.02, "{before}");
+    // 5 m to the point, 4 m to the line, 6 m on stairs at half the speed, 9 m to the exit; 1.2 s to get going and to stop.
+    let query = format!(
+        "estimate P(F<={} s (me in ground.exit)) by fixed(trials = 1)",
+        (5.0 + 4.0 + 12.0 + 9.0) / 1.2 + 1.5
+    );
+    assert_eq!(check(&model(&house), &query).estimate, Some(1.0));
+}
+
+#[test]
 fn a_scene_of_one_level_has_the_bytes_of_one_without() {
     let scene = "wall (0, 0) -- (9, 0) -- (9, 6); obstacle pillar: circle (4, 3) radius 0.5 m
         region exit: rect (7, 1) .. (8, 5); region start: rect (1, 1) .. (3, 5)";
@@ -151,8 +173,17 @@ fn what_does_not_fit_together_is_refused() {
         ("kind person", "agent me: person { at = first (90, 0) }\nkind person", "lies outside of the level"),
         (
             "kind person: sfm preset smc2 {",
-            "agent me: person { at = (3, 3); route = ground.exit }\nkind person: planned { limit speed = 1.5 m/s;",
-            "cannot be in a scene with levels",
+            "agent me: person { at = (3, 3); route = ground.exit }
+             kind person: planned { limit speed = 1.5 m/s; roadmap = rrt(root = ground.exit);",
+            "walkers with a tree as their roadmap cannot be in a scene with levels",
+        ),
+        (
+            "kind person",
+            "kind planner: planned { limit speed = 1.5 m/s }
+             agent me: planner { at = (3, 3); route = ground.exit }
+             paths me { roadmap alternatives 2 }
+             kind person",
+            "need a scene without levels",
         ),
     ] {
         assert!(fine.contains(from), "{from}");

@@ -90,7 +90,7 @@ impl Scene {
         out
     }
 
-    /// What lies on one island alone, with the numbers of the whole.
+    /// What lies on one island alone; barriers and regions have the numbers of the whole.
     pub fn island(&self, island: usize) -> Self {
         let is_here = |p: Vec2| self.storeys.island_at(p) == island;
         let barrier = |barrier: &Barrier| {
@@ -110,6 +110,8 @@ impl Scene {
         Self {
             barriers: self.barriers.iter().map(barrier).collect(),
             regions: self.regions.iter().map(region).collect(),
+            points: self.points.iter().filter(|(_, p)| is_here(*p)).cloned().collect(),
+            lines: self.lines.iter().filter(|line| is_here(line.segment.a)).cloned().collect(),
             storeys: Storeys::default(),
             ..self.clone()
         }

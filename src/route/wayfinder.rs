@@ -52,9 +52,14 @@ impl Ways {
         atlas
     }
 
+    /// The ways over the stairs of a scene with levels.
+    fn levels(&self, scenario: &Scenario) -> Option<Arc<Atlases>> {
+        (!scenario.scene.storeys.are_none()).then(|| self.atlases(&scenario.scene))
+    }
+
     /// The drivers of a run: everybody finds their way, unless their kind plans or goes straight, or no barrier can stand in the way.
     pub fn drivers(&self, scenario: &Scenario, seed: u64) -> Drivers {
-        let drivers = walkers(Drivers::new(seed), &self.terrains, scenario);
+        let drivers = walkers(Drivers::new(seed), &self.terrains, scenario, self.levels(scenario));
         let agents = finders(scenario);
         if agents.is_empty() {
             return drivers;
@@ -64,7 +69,7 @@ impl Ways {
 
     /// The walkers of a scenario that plan.
     pub fn walkers(&self, scenario: &Scenario, seed: u64) -> Walkers {
-        Walkers::new(&self.terrains, scenario, seed)
+        Walkers::new(&self.terrains, scenario, seed, self.levels(scenario))
     }
 
     /// At most so many paths of different classes for an agent, the shortest first.

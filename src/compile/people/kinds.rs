@@ -247,10 +247,14 @@ pub(crate) fn body(context: &mut Context<'_>, kind: &Kind, name: &Ident) -> Lowe
             "walkers that plan or step",
             "use a kind that starts from `sfm` or `cfs`",
         )?;
-        if !context.scene.storeys.are_none() {
-            let said = "walkers that plan or step cannot be in a scene with levels";
-            return context.report(error!(E0412, name.span, "{said}";
-                hint: "use a kind that starts from `sfm` or `cfs`"));
+        let refused = match kind.planning.roadmap {
+            _ if kind.base == model::Kind::Stepped => Some("walkers that step"),
+            model::RoadmapRule::Rrt { .. } => Some("walkers with a tree as their roadmap"),
+            model::RoadmapRule::Prm { .. } => None,
+        };
+        if let Some(who) = refused.filter(|_| !context.scene.storeys.are_none()) {
+            return context.report(error!(E0412, name.span, "{who} cannot be in a scene with levels";
+                hint: "use a kind that starts from `sfm` or `cfs`, or one that plans with `roadmap = prm(…)`"));
         }
     }
     let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());

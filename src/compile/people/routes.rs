@@ -188,6 +188,11 @@ fn lower_paths<'a>(context: &mut Context<'a>, decl: &'a PathsDecl, people: &Peop
         return context.report(error!(E0406, decl.alternatives.span, "{said}"));
     };
     let [agent] = agents?[..] else { return Err(Reported) };
+    if !context.scene.storeys.are_none() {
+        let said = "the paths between which one chooses need a scene without levels";
+        return context
+            .report(error!(E0412, decl.agent.span, "{said}"; hint: "rank moves with routes instead"));
+    }
     if people.agents[agent.0 as usize].body.planner.is_none() {
         let said = format!("`{}` does not plan, and has no paths", people.agents[agent.0 as usize].name);
         let error = error!(E0406, decl.agent.span, "{said}");

@@ -8,9 +8,10 @@ mod speeds;
 mod terrain;
 mod walker;
 
-pub use errand::{Errand, point_in};
+pub use errand::{Errand, Floor, point_in};
 pub use options::{PathOption, path_options};
 pub use reach::doubt;
 pub use speeds::{Course, Speeds, pieces_of, stretches};
 pub use terrain::{Terrain, Terrains, middle, widest};
-pub use walker::{Outline, Walkers, Wish, walkers};
+pub(in crate::route) use walker::walkers;
+pub use walker::{Outline, Walkers, Wish};

@@ -11,11 +11,12 @@ use crate::route::survey::{Doubt, DoubtKind, Place, Stretch, stretches};
 const ROWS: u32 = 8;
 const GOAL_ROWS: u32 = 3;
 
-/// The first thing that is doubtful about the roadmap of an agent, called `who`; `None` for agents that do not plan.
+/// The first thing that is doubtful about the roadmap of an agent, called `who`; `None` for agents that do not plan, and among
+/// levels, where each has a roadmap of its own.
 pub fn doubt(terrains: &Terrains, scenario: &Scenario, seed: u64, id: AgentId, who: &str) -> Option<Doubt> {
     let scene = &scenario.scene;
     let agent = &scenario.agents[id.0 as usize];
-    let planner = agent.body.planner.as_ref()?;
+    let planner = agent.body.planner.as_ref().filter(|_| scene.storeys.are_none())?;
     for Stretch { origin, goal, end, name } in stretches(scene, agent) {
         let terrain = terrains.of(scene, agent, goal, seed)?;
         let free = |place: Place<'_>, rows: u32| {

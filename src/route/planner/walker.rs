@@ -1,13 +1,14 @@
 //! The driver of walkers that plan.
 
-use super::errand::Errand;
+use super::errand::{Errand, Floor};
 use super::options::{PathOption, path_options};
 use super::speeds::{Course, Speeds};
-use super::terrain::{Terrain, Terrains};
+use super::terrain::{Terrain, Terrains, widest};
 use crate::base::geometry::Vec2;
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::kernel::driver::{Driver, Drivers, Limits, Memory, Occasion, Plan, Situation};
 use crate::model::{AgentId, Goal, Leg, Move, Parameter, RoadmapRule, Scenario};
+use crate::route::atlas::Atlases;
 use crate::route::roadmap::shortest;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -20,6 +21,8 @@ const LAG: f64 = 0.5;
 const THERE: f64 = 0.1;
 /// How long somebody stands until the driver looks again, s.
 const PAUSE: f64 = 0.5;
+/// So far behind the line of stairs a plan would end, m: nobody slows down for it.
+const BEYOND: f64 = 2.0;
 /// Draws of one plan: knots, and those that are put between them.
 const DRAWS: u32 = 1 << 10;
 
@@ -27,9 +30,11 @@ const DRAWS: u32 = 1 << 10;
 #[derive(Debug)]
 pub struct Walkers {
     terrains: Arc<Terrains>,
+    /// The ways over the stairs of a scene with levels.
+    levels: Option<Arc<Atlases>>,
     seed: u64,
-    /// The terrain of each agent whose roadmap does not depend on where it goes.
-    terrain: BTreeMap<AgentId, OnceLock<Option<Arc<Terrain>>>>,
+    /// The terrain of each agent whose roadmap does not depend on where it goes, on each island.
+    terrain: BTreeMap<(AgentId, usize), OnceLock<Option<Arc<Terrain>>>>,
     /// The paths of those who may be advised to take one, and how many there are at most; found when they are first needed.
     paths: BTreeMap<AgentId, (usize, OnceLock<Vec<PathOption>>)>,
 }
@@ -71,17 +76,27 @@ fn planned(scenario: &Scenario) -> impl Iterator<Item = AgentId> + '_ {
 }
 
 /// Gives all agents that plan their driver.
-pub fn walkers(drivers: Drivers, terrains: &Arc<Terrains>, scenario: &Scenario) -> Drivers {
+pub(in crate::route) fn walkers(
+    drivers: Drivers,
+    terrains: &Arc<Terrains>,
+    scenario: &Scenario,
+    levels: Option<Arc<Atlases>>,
+) -> Drivers {
     if planned(scenario).next().is_none() {
         return drivers;
     }
-    let walkers = Walkers::new(terrains, scenario, drivers.seed());
+    let walkers = Walkers::new(terrains, scenario, drivers.seed(), levels);
     drivers.with(planned(scenario), Arc::new(walkers))
 }
 
 impl Walkers {
-    /// Of a scenario, in a run with a seed.
-    pub fn new(terrains: &Arc<Terrains>, scenario: &Scenario, seed: u64) -> Self {
+    /// Of a scenario, in a run with a seed; with the ways over stairs where its scene has levels.
+    pub(in crate::route) fn new(
+        terrains: &Arc<Terrains>,
+        scenario: &Scenario,
+        seed: u64,
+        levels: Option<Arc<Atlases>>,
+    ) -> Self {
         let declared = scenario.moves.iter().filter(|moves| moves.paths.is_some());
         let most = |options: &[(String, Move)]| {
             let class = |option| if let Move::Path(k) = option { Some(k as usize + 1) } else { None };
@@ -91,18 +106,60 @@ impl Walkers {
             let planner = &scenario.agents[id.0 as usize].body.planner;
             planner.as_ref().is_some_and(|planner| matches!(planner.roadmap, RoadmapRule::Prm { .. }))
         };
+        let islands = scenario.scene.storeys.islands.len().max(1);
+        let fixed = planned(scenario).filter(is_fixed);
+        let fixed = fixed.flat_map(|id| (0..islands).map(move |island| ((id, island), OnceLock::new())));
         Self {
             terrains: Arc::clone(terrains),
+            levels,
             seed,
-            terrain: planned(scenario).filter(is_fixed).map(|id| (id, OnceLock::new())).collect(),
+            terrain: fixed.collect(),
             paths: declared.map(|moves| (moves.agent, (most(&moves.options), OnceLock::new()))).collect(),
         }
     }
 
-    /// The terrain of an agent on the way to a goal.
-    fn terrain(&self, scenario: &Scenario, id: AgentId, goal: &Goal) -> Option<Arc<Terrain>> {
-        let find = || self.terrains.of(&scenario.scene, &scenario.agents[id.0 as usize], goal, self.seed);
-        self.terrain.get(&id).map_or_else(find, |known| known.get_or_init(find).clone())
+    /// The terrain of an agent on a floor, on the way to a goal.
+    fn terrain(
+        &self,
+        floor: &Floor<'_>,
+        scenario: &Scenario,
+        id: AgentId,
+        goal: &Goal,
+    ) -> Option<Arc<Terrain>> {
+        let find = || self.terrains.of(floor.scene, &scenario.agents[id.0 as usize], goal, self.seed);
+        self.terrain.get(&(id, floor.island)).map_or_else(find, |known| known.get_or_init(find).clone())
+    }
+
+    /// The floor on which an agent does the next part of its errand; `None` without a way.
+    fn floor<'a>(
+        &'a self,
+        scenario: &'a Scenario,
+        id: AgentId,
+        from: Vec2,
+        legs: &[Leg],
+    ) -> Option<Floor<'a>> {
+        let (scene, body) = (&scenario.scene, &scenario.agents[id.0 as usize].body);
+        let Some(levels) = &self.levels else {
+            return Some(Floor { scene, island: 0, legs: legs.len(), over: None });
+        };
+        let (Some(Leg::To(goal)), Some(planner)) = (legs.first(), &body.planner) else { return None };
+        let atlas = levels.of(0);
+        let storeys = &scene.storeys;
+        let island = storeys.island_at(from);
+        let reach = widest(&body[Parameter::Radius]) + planner.clearance;
+        let way = atlas.way_of((reach, body.stairs), from, goal)?;
+        let is_here = |p: Vec2| storeys.island_at(p) == island;
+        let stays = |leg: &&Leg| match leg {
+            Leg::To(Goal::Point(p)) => is_here(*p),
+            Leg::To(Goal::Region(id)) => {
+                let parts = scene.regions[id.0 as usize].shape.parts();
+                parts.iter().all(|part| is_here(part.inner_point()))
+            }
+            Leg::Wait(_) => false,
+        };
+        let over = way.over.map(|(portal, _)| [way.end, way.end + storeys.portals[portal].across * BEYOND]);
+        let legs = if over.is_some() { 0 } else { 1 + legs[1..].iter().take_while(stays).count() };
+        Some(Floor { scene: atlas.islands[island].scene(), island, legs, over })
     }
 
     /// The path of a class.
@@ -133,23 +190,26 @@ impl Walkers {
             };
             corners.extend(part.into_iter().skip(1));
         }
+        // Behind a line of stairs nothing is to be tested: one goes on elsewhere.
+        corners.extend(errand.beyond);
         Some(corners)
     }
 
     /// A plan through the goals up to the next pause; `None` without a way.
     pub fn outline(&self, wish: &Wish<'_>) -> Option<Outline> {
         let Some(Leg::To(goal)) = wish.legs.first() else { return None };
-        let terrain = self.terrain(wish.scenario, wish.agent, goal)?;
-        let errand = wish.errand(&terrain);
+        let floor = self.floor(wish.scenario, wish.agent, wish.motion.0, wish.legs)?;
+        let terrain = self.terrain(&floor, wish.scenario, wish.agent, goal)?;
+        let errand = wish.errand(&floor, &terrain);
         if wish.speeds.radius > terrain.radius {
             return None;
         }
         let corners = self.corners(wish, &terrain, &errand)?;
-        let through = errand.points.split_last().map_or(&[][..], |(_, through)| through);
         let first = wish.address.2.wrapping_mul(DRAWS) & !(1 << 31);
         let stream = wish.stream();
         let draw = |knot: u32| stream.uniform_pair(first + knot % DRAWS);
-        let course = wish.speeds.course(&corners, through, terrain.free.sight(), wish.motion.1, draw).ok();
+        let course =
+            wish.speeds.course(&corners, errand.through(), terrain.free.sight(), wish.motion.1, draw).ok();
         Some(Outline { terrain, corners, course })
     }
 }
@@ -159,8 +219,12 @@ impl Wish<'_> {
         Stream::of(self.address.0, self.address.1, Purpose::Plan)
     }
 
-    fn errand(&self, terrain: &Terrain) -> Errand {
-        Errand::new(&self.scenario.scene, &terrain.free, self.legs, self.speeds.radius, self.stream())
+    fn errand(&self, floor: &Floor<'_>, terrain: &Terrain) -> Errand {
+        let mut errand = Errand::new(floor, &terrain.free, self.legs, self.speeds.radius, self.stream());
+        // Whoever stands at a line of stairs has only to cross it.
+        let is_there = |p: &Vec2| (p - self.motion.0).norm() < THERE;
+        errand.points.retain(|p| floor.over.is_none() || !is_there(p));
+        errand
     }
 }
 
@@ -190,9 +254,12 @@ impl Driver for Walkers {
             speeds,
             path: situation.path,
         };
-        let Some(terrain) = self.terrain(scenario, id, goal) else { return Plan::Straight };
-        let points = wish.errand(&terrain).points;
-        let Some(&end) = points.last() else { return Plan::Straight };
+        let Some(floor) = self.floor(scenario, id, situation.position, situation.legs) else {
+            return Plan::NoWay;
+        };
+        let Some(terrain) = self.terrain(&floor, scenario, id, goal) else { return Plan::Straight };
+        let errand = wish.errand(&floor, &terrain);
+        let Some(end) = errand.end() else { return Plan::Straight };
         match (situation.occasion, situation.plan) {
             // The plan leads on through the next goal.
             (Occasion::Leg, Plan::Follow(trajectory, _))
@@ -204,7 +271,7 @@ impl Driver for Walkers {
             (Occasion::Ended, Plan::Follow(..)) => return Plan::Stand(PAUSE),
             _ => {}
         }
-        if points.len() == 1 && (situation.position - end).norm() < THERE {
+        if errand.points.len() == 1 && (situation.position - end).norm() < THERE {
             return Plan::Stand(PAUSE);
         }
         let Some(outline) = self.outline(&wish) else { return Plan::NoWay };

@@ -33,7 +33,8 @@ impl FreeSpace {
             }
         }
         let boxes: Vec<Bounds> = solids.iter().map(Shape::bounds).collect();
-        let regions = scene.regions.iter().map(|region| region.shape.bounds());
+        // An island of a scene with levels has regions without parts.
+        let regions = scene.regions.iter().flat_map(|region| region.shape.parts()).map(Shape::bounds);
         corners.extend(regions.chain(boxes.iter().copied()).flat_map(|b| [b.low, b.high]));
         let origin = Bounds { low: Vec2::zeros(), high: Vec2::zeros() };
         let sight = Sight::new(scene);
