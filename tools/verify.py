@@ -198,18 +198,19 @@ def claim_of(rule, ask, decision):
 # Intervals.
 
 
-def at_all_times(s, f, error):
-    """The confidence sequence of Krichevsky and Trofimov: the ends at which the evidence against a probability is 1/error."""
-    if s + f == 0:
-        return 0.0, 1.0
+def held_at_all_times(s, f, error, p):
+    """Whether a probability is in the confidence sequence of Krichevsky and Trofimov: the evidence against it is below 1/error."""
+    if p <= 0 and s or p >= 1 and f:
+        return False
     mixture = ln_beta(s + 0.5, f + 0.5) - ln_beta(0.5, 0.5)
+    return -(s * math.log(p) if s else 0.0) - (f * math.log1p(-p) if f else 0.0) < -math.log(error) - mixture + 1e-12
 
-    def is_in(p):
-        return -(s * math.log(p) if s else 0.0) - (f * math.log1p(-p) if f else 0.0) < -math.log(error) - mixture + 1e-12
 
-    share = s / (s + f)
-    low = 0.0 if s == 0 else bisected(0.0, share, lambda p: p == 0.0 or not is_in(p))[0]
-    high = 1.0 if f == 0 else bisected(share, 1.0, lambda p: p < 1.0 and is_in(p))[1]
+def at_all_times(s, f, error):
+    """Its ends."""
+    share = s / (s + f) if s + f else 0.5
+    low = 0.0 if s == 0 else bisected(0.0, share, lambda p: not held_at_all_times(s, f, error, p))[0]
+    high = 1.0 if f == 0 else bisected(share, 1.0, lambda p: held_at_all_times(s, f, error, p))[1]
     return low, high
 
 
@@ -404,17 +405,19 @@ def quantile(result, ask, claim, outcomes):
     rule, q, values = result["method"], ask["estimate"]["level"], outcomes["values"]
     n, known = len(values), sorted(v for v in values if v is not None)
     lost, error = n - len(known), rule["delta"]
-    if n < rule["trials"]:
-        raise KeyError("order statistics of fewer trials than were planned")
-    if rule["name"] == "order_statistics":
-        tail = math.log(0.5 * error)
-        at_most = lambda k: 0.0 if k >= n else ln_tails(k + 1, n - k, q)[1]
-        above = lambda k: -INF if k >= n else ln_tails(k + 1, n - k, q)[0]
-        lower = next((k for k in range(n + 1) if at_most(k) > tail), n)
-        upper = next((k for k in range(n + 1) if above(k) <= tail), n) + 1
-    else:
-        reach = math.sqrt(math.log(2 / error) / (2 * n))
+    early = n < rule["trials"]
+    if rule["name"] != "order_statistics":
+        # A budget that ended sampling spends the error over all numbers of trials.
+        reach = math.sqrt(math.log(2 * (n * (n + 1) if early else 1) / error) / (2 * n))
         lower, upper = math.floor((q - reach) * n), math.ceil((q + reach) * n)
+    elif early:
+        is_in = lambda k: held_at_all_times(k, n - k, 0.5 * error, q)
+        lower = next((k for k in range(n) if k / n >= q or is_in(k)), n)
+        upper = next((k for k in range(n) if (k + 1) / n > q and not is_in(k + 1)), n) + 1
+    else:
+        tail = math.log(0.5 * error)
+        lower = next((k for k in range(n) if ln_tails(k + 1, n - k, q)[1] > tail), n)
+        upper = next((k for k in range(n) if ln_tails(k + 1, n - k, q)[0] <= tail), n) + 1
     value = lambda rank, below: -INF if rank <= below else known[rank - below - 1] if rank - below <= len(known) else INF
     bounded(result, claim, value(lower, lost) if lower >= 1 else -INF, value(upper, 0) if upper <= n else INF, error)
 
