@@ -9,6 +9,7 @@
 mod ahead;
 mod aims;
 mod buildings;
+mod certificates;
 mod chance;
 mod circles;
 mod claims;

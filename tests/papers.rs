@@ -48,6 +48,7 @@ fn run(page: &str) {
         "examples/cookbook",
         "examples/programs",
         "gaits",
+        "tools",
     ] {
         copied(&root().join(folder), &place.path(folder));
     }
@@ -115,7 +116,7 @@ fn commands_of_the_pages_behind_it_do_what_they_say() {
 
 #[test]
 fn commands_of_the_first_pages_do_what_they_say() {
-    for page in ["tutorial.md", "README.md", "buildings.md", "outcomes.md", "programs.md"] {
+    for page in ["tutorial.md", "README.md", "buildings.md", "outcomes.md", "programs.md", "proofs.md"] {
         run(page);
     }
 }

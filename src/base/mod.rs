@@ -4,6 +4,7 @@
 //! streams, exact decimals, ticks of the clock and lane vectors.
 
 pub mod decimal;
+pub mod digest;
 pub mod dimension;
 pub mod elliptic;
 pub mod fingerprint;

@@ -190,6 +190,9 @@ pub(super) struct Check {
     /// command in which `{shard}`, `{count}`, `{last}`, `{plan}` and `{parts}` are replaced. Never changes a result.
     #[arg(long, value_name = "ENGINE|COMMAND", value_parser = NonEmptyStringValueParser::new())]
     pub(super) launch: Option<String>,
+    /// Write a certificate: a file by which a stranger checks the results, with `smc verify` or `tools/verify.py`.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["launch", "forecast", "outcomes"])]
+    pub(super) certificate: Option<PathBuf>,
     /// Folder of the parts that shards write; it is kept, so that a call can go on where another one ended.
     #[arg(long, value_name = "DIR", requires = "launch")]
     pub(super) parts: Option<PathBuf>,

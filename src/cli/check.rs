@@ -10,10 +10,10 @@ use super::progress::Progress;
 use super::terminal::{Colors, print, say};
 use super::values::Destination;
 use super::{complaint, inputs, output, page, values};
-use crate::base::fingerprint::Fingerprint;
+use crate::base::digest::Digest;
 use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Failure, Finding};
-use crate::engine::shards::Origin;
+use crate::engine::shards::{Kept, Origin, Part, Recorder, Stored};
 use crate::engine::traces::{Traces, traces};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Executor, Outcomes, Watched, forecast, run as run_study,
@@ -110,6 +110,14 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         return reporter.refuse(error);
     }
     let is_given = given.is_some();
+    let certificate = match way {
+        Way::Check(check) => check.certificate.as_deref(),
+        Way::Merge(_) => None,
+    };
+    if let Err(error) = output::guard(certificate, &paths) {
+        return reporter.refuse(error);
+    }
+    let kept = certificate.map(|_| Kept::default());
     let most = most_threads();
     if arguments.cores.threads.is_some_and(|threads| threads > most) {
         say(&format!(
@@ -151,6 +159,12 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     let result = if let (Some(given), Some(scenario)) = (given, scenario) {
         let work = |outcomes: &Outcomes<'_>| run_study(study, &call(), outcomes, &budget, &progress);
         given.run(&scenario, study, &executor, work).map(Some)
+    } else if let Some(kept) = &kept {
+        let keep = |part: &Part| kept.keep(part);
+        let recorder = Recorder::new(Stored::nothing(&executor), &executor, origin, &keep);
+        let run = run_study(study, &call(), &recorder, &budget, &progress);
+        recorder.flush(budget.elapsed());
+        run.map(Some).map_err(|fault| library::refusals(&fault))
     } else if let Way::Check(Check { launch: None, .. }) = way {
         // Trials of the kernel are independent; those of another program are watched.
         let watched = Watched::new(&executor);
@@ -183,6 +197,13 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         Ok(Some(mut run)) => {
             for result in &mut run.results {
                 result.model = inputs.calibration.as_ref().and_then(|known| known.about(result));
+            }
+            run.inputs.clone_from(&reporter.prints);
+            if let (Some(kept), Some(path)) = (&kept, certificate) {
+                let text = report::certificate::text(study, &run, kept);
+                if let Err(error) = output::save(path, text.as_bytes()) {
+                    return reporter.refuse(error);
+                }
             }
             let room = report::html::MOST_NUMBERS;
             let is_shown = reporter.outputs.page.is_some() && !is_given;
@@ -231,7 +252,7 @@ struct Reporter<'a> {
     findings: Vec<Finding>,
     /// How many errors there are.
     errors: usize,
-    prints: Vec<(String, Fingerprint)>,
+    prints: Vec<(String, Digest)>,
     /// Where the results go.
     outputs: Outputs,
 }

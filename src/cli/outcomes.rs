@@ -5,7 +5,7 @@
 
 use super::complaint;
 use super::inputs::{self, shown};
-use crate::base::fingerprint::Fingerprint;
+use crate::base::digest::Digest;
 use crate::compile::Study;
 use crate::compile::study::Ask;
 use crate::data::trials::{Outcome, Outcomes as Row, Trials};
@@ -95,7 +95,7 @@ impl Given {
         Ok(given)
     }
 
-    /// Nobody wrote the text of the scenario, so its warnings say nothing; the fingerprint is that of the table, if it is a file.
+    /// Nobody wrote the text of the scenario, so its warnings say nothing; the digest is that of the table, if it is a file.
     pub(super) fn own(&self, inputs: &mut Inputs) {
         let source =
             inputs.sources.iter().find(|source| source.name == shown(&self.name)).map(|source| source.id);
@@ -107,7 +107,7 @@ impl Given {
         inputs.prints.retain_mut(|(name, known)| match (&print, name == shown(&self.name)) {
             (_, false) => true,
             (Some(bytes), true) => {
-                *known = Fingerprint::of(bytes);
+                *known = Digest::of(bytes);
                 true
             }
             (None, true) => false,

@@ -4,7 +4,7 @@
 use super::models;
 use super::refusal::refusal;
 use crate::advise::groups;
-use crate::base::fingerprint::Fingerprint;
+use crate::base::digest::Digest;
 use crate::compile::{
     Files, Input, Request, Setting, Starts, Study, examine, is_series, own_errors, requests,
 };
@@ -80,8 +80,8 @@ pub struct Inputs {
     pub diagnostics: Vec<Diagnostic>,
     /// The number of errors, including those that are only counted.
     pub errors: usize,
-    /// Each file and the fingerprint of its bytes.
-    pub prints: Vec<(String, Fingerprint)>,
+    /// Each file and the digest of its bytes.
+    pub prints: Vec<(String, Digest)>,
     /// What compilation yields, if nothing is wrong.
     pub study: Option<Study>,
     /// How often the model was right about recorded people, where a file says so.
@@ -91,7 +91,7 @@ pub struct Inputs {
 /// What a call names, read and parsed but not compiled.
 #[derive(Debug, Default)]
 pub struct Parsed {
-    /// Texts, what the parser says of them, and the fingerprints of all files.
+    /// Texts, what the parser says of them, and the digests of all files.
     pub inputs: Inputs,
     /// The scenario.
     pub scenario: ScenarioFile,
@@ -185,7 +185,7 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     for request in asked {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {
-            reader.inputs.prints.push((request.path.clone(), Fingerprint::of(bytes)));
+            reader.inputs.prints.push((request.path.clone(), Digest::of(bytes)));
             // Here and not where steps are drawn: every command reads its files here.
             if request.is_gait
                 && let Err(error) = LearnedGait::read(bytes)
@@ -268,7 +268,7 @@ impl Reader<'_> {
 
     fn calibration(&mut self, name: &str) {
         let read = self.folder.text(name).map_err(|reason| Diagnostic::placeless(Code::E0701, reason));
-        match read.and_then(|bytes| Ok((Fingerprint::of(&bytes), Calibration::read(name, &bytes)?))) {
+        match read.and_then(|bytes| Ok((Digest::of(&bytes), Calibration::read(name, &bytes)?))) {
             Ok((print, found)) => {
                 self.inputs.prints.push((self.folder.shown(name).to_owned(), print));
                 self.inputs.calibration = Some(found);
@@ -287,7 +287,7 @@ impl Reader<'_> {
             }
         };
         let shown = self.folder.shown(name);
-        self.inputs.prints.push((shown.to_owned(), Fingerprint::of(&bytes)));
+        self.inputs.prints.push((shown.to_owned(), Digest::of(&bytes)));
         match decode(id, shown, &bytes) {
             Ok(source) => {
                 self.inputs.sources.push(source.clone());

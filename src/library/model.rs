@@ -9,7 +9,7 @@ use super::refusal::{of_model, refusal, refusals};
 use super::report::Report;
 use super::trial::Trial;
 use super::ways::{is_refused, survey};
-use crate::base::fingerprint::Fingerprint;
+use crate::base::digest::Digest;
 use crate::base::random::TrialKey;
 use crate::compile::{Study, matches};
 use crate::engine::outcome::{CallResult, Failure};
@@ -424,7 +424,7 @@ pub(super) struct Asked<'a> {
     pub(super) call: &'a Call<'a>,
     /// Warnings about the texts and about ways.
     inputs: &'a [Diagnostic],
-    prints: &'a [(String, Fingerprint)],
+    prints: &'a [(String, Digest)],
     programs: Option<&'a Programs>,
 }
 

@@ -9,6 +9,7 @@ pub mod advised;
 pub mod behaviours;
 pub mod brief;
 pub mod calibration;
+pub mod certificate;
 pub mod csv;
 mod escape;
 pub mod evaluate;

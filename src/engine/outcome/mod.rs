@@ -9,7 +9,7 @@ mod evidence;
 mod ranking;
 mod witness;
 
-use crate::base::fingerprint::Fingerprint;
+use crate::base::digest::Digest;
 use crate::engine::flaw::Flaw;
 pub use crate::engine::witness::decider::Decider;
 pub use crate::trials::budget::Stop;
@@ -33,8 +33,8 @@ pub struct CallResult {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
-    /// Each file that was read and its fingerprint: scenario, properties, then what the scenario names.
-    pub inputs: Vec<(String, Fingerprint)>,
+    /// Each file that was read and its digest: scenario, properties, then what the scenario names.
+    pub inputs: Vec<(String, Digest)>,
     /// Results in the order of the queries; a swept query has one per setting.
     pub results: Vec<QueryResult>,
     /// What the front end says of the inputs: warnings, and where nothing could run, errors.

@@ -6,6 +6,7 @@
 //! of their indices, and requests what is not there, which makes the plan of the next round. Nothing here knows of files or
 //! processes.
 
+mod kept;
 mod part;
 mod plan;
 mod recorder;
@@ -23,6 +24,7 @@ use crate::engine::trials::prepared::PreparedWorld;
 use crate::kernel::driver::MakeDrivers;
 use crate::trials::budget::Budget;
 use crate::trials::cell::Item;
+pub use kept::{Column, Kept};
 pub use part::{Body, Damaged, Head, Part};
 pub use plan::{Attempts, Plan};
 pub use recorder::Recorder;

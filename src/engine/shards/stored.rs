@@ -47,6 +47,18 @@ pub struct Stored<'r> {
 }
 
 impl<'r> Stored<'r> {
+    /// Nothing.
+    pub fn nothing(threads: &'r Threads) -> Self {
+        Self {
+            threads,
+            reread: &|_| None,
+            pieces: BTreeMap::new(),
+            runs: Vec::new(),
+            recent: Mutex::default(),
+            wanted: Mutex::default(),
+        }
+    }
+
     /// The outcomes of some parts, of which `heads` are known.
     ///
     /// # Errors
@@ -56,14 +68,7 @@ impl<'r> Stored<'r> {
         reread: &'r (dyn Fn(usize) -> Option<Part> + Sync),
         threads: &'r Threads,
     ) -> Result<Self, ([usize; 2], Unit)> {
-        let mut stored = Self {
-            threads,
-            reread,
-            pieces: BTreeMap::new(),
-            runs: Vec::new(),
-            recent: Mutex::default(),
-            wanted: Mutex::default(),
-        };
+        let mut stored = Self { reread, ..Self::nothing(threads) };
         let mut known = BTreeMap::new();
         for (part, head) in heads.iter().enumerate() {
             for (at, unit) in head.units.iter().enumerate() {

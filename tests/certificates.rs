@@ -1,0 +1,127 @@
+//! Certificates from the outside: `tools/verify.py`, which shares nothing with the program, computes results again from their
+//! outcomes, and refuses what does not follow from them.
+
+use crate::program::Place;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// What `tools/verify.py` says of a file; none where Python is missing.
+fn verified(file: &Path) -> Option<(i32, String)> {
+    let Ok(Output { status, stdout, stderr, .. }) =
+        Command::new("python3").arg("tools/verify.py").arg(file).output()
+    else {
+        eprintln!("SKIPPED: python3 is not installed");
+        return None;
+    };
+    Some((status.code()?, String::from_utf8_lossy(&[stdout, stderr].concat()).into_owned()))
+}
+
+/// Ten throws of a coin in continuous time.
+const COIN: &str = "
+horizon = 10 s
+step = 1 s
+param p = 0.7 in 0 .. 1
+process coin { var heads = 0; when heads < 10 at p * 1 /s -> heads = heads + 1 }
+";
+
+/// One query for each rule that can be computed again.
+const RULES: &str = "
+property heads = F<=1 s (coin.heads >= 1)
+check P(heads) >= 0.3
+check P(heads) < 0.7 by sprt(alpha = 0.02, beta = 0.01, indifference = 0.05)
+check P(heads) > 0.3 by sprt2(alpha = 0.01, beta = 0.01, indifference = 0.1)
+check P(heads) >= 0.4 by plan(alpha = 0.01, beta = 0.01, indifference = 0.05)
+check P(heads) >= 0.5 by three_way(alpha = 0.05, indifference = 0.1)
+estimate P(heads) within 0.05
+estimate P(heads) by okamoto(epsilon = 0.05, delta = 0.05)
+estimate P(heads) by clopper_pearson(trials = 321)
+estimate P(heads) by spending(epsilon = 0.05, delta = 0.05)
+estimate E(coin.heads at 5 s) in 0 .. 10 within 0.3
+estimate E(coin.heads at 5 s) in 0 .. 10 by okamoto(epsilon = 0.5, delta = 0.05)
+estimate Q(0.9, time_until(coin.heads >= 3))
+estimate Q(0.5, time_until(coin.heads >= 3)) by dkw(trials = 500)
+compare P(heads) under p = 0.5 with p = 0.9 within 0.1
+compare E(coin.heads at 5 s) in 0 .. 10 under p = 0.5 with p = 0.9
+";
+
+/// The lines of a certificate of the coin, without the digest.
+fn lines(place: &Place, words: &[&str]) -> Vec<Value> {
+    let said = place.call(&[&["check", "coin.scn", "rules.bltl", "--certificate", "coin.smcc"], words].concat());
+    assert!(said.code.is_some_and(|code| code < 2 || code == 3), "{}", said.err);
+    let text = std::fs::read_to_string(place.path("coin.smcc")).unwrap();
+    let mut lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let digest = lines.pop().unwrap();
+    assert!(digest["digest"].as_str().unwrap().starts_with("sha256:"));
+    lines
+}
+
+/// Writes lines with the digest that fits them.
+fn forged(place: &Place, lines: &[Value]) {
+    let mut text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    let digest: String = Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect();
+    text += &format!("{}\n", json!({ "digest": format!("sha256:{digest}") }));
+    place.write("coin.smcc", text.as_bytes());
+}
+
+#[test]
+fn a_stranger_computes_every_result_again() {
+    let place = Place::new(&[("coin.scn", COIN), ("rules.bltl", RULES)]);
+    for (seed, words) in [("0", &[][..]), ("7", &[]), ("3", &["--max-trials", "100"])] {
+        lines(&place, &[&["--seed", seed], words].concat());
+        let Some((code, said)) = verified(&place.path("coin.smcc")) else { return };
+        let wanted = i32::from(!words.is_empty()) * 3;
+        assert_eq!(code, wanted, "{said}");
+        assert!(!said.contains("refused"), "{said}");
+    }
+}
+
+#[test]
+fn what_does_not_follow_from_the_outcomes_is_refused() {
+    let place = Place::new(&[("coin.scn", COIN), ("rules.bltl", RULES)]);
+    let whole = lines(&place, &[]);
+    let results: Vec<usize> = (0..whole.len()).filter(|k| whole[*k].get("result").is_some()).collect();
+    let file = place.path("coin.smcc");
+    // A changed byte, and a file that is cut short.
+    let bytes = std::fs::read(&file).unwrap();
+    for damaged in [[&bytes[..300], b"9", &bytes[301..]].concat(), bytes[..bytes.len() / 2].to_vec()] {
+        place.write("coin.smcc", &damaged);
+        let Some((code, said)) = verified(&file) else { return };
+        assert_eq!(code, 2, "{said}");
+    }
+    let mut tried = 0;
+    for &at in &results {
+        let kind = whole[at]["result"]["kind"].as_str().unwrap().to_owned();
+        let mut mutants: Vec<Box<dyn Fn(&mut Vec<Value>)>> = vec![
+            // One trial less, or a narrower claim.
+            Box::new(move |lines| {
+                let trials = lines[at]["result"]["trials"].as_u64().unwrap();
+                lines[at]["result"]["trials"] = json!(trials - 1);
+            }),
+            Box::new(move |lines| {
+                let high = lines[at]["result"]["high"].as_f64().unwrap();
+                lines[at]["result"]["high"] = json!(high - 1e-3);
+            }),
+        ];
+        if kind == "check" {
+            mutants.push(Box::new(move |lines| {
+                let satisfied = lines[at]["result"]["verdict"] == "satisfied";
+                lines[at]["result"]["verdict"] = json!(if satisfied { "violated" } else { "satisfied" });
+            }));
+            mutants.push(Box::new(move |lines| {
+                let error = lines[at]["claim"]["error"].as_f64().unwrap();
+                lines[at]["claim"]["error"] = json!(error / 10.0);
+            }));
+        }
+        for mutant in mutants {
+            let mut lines = whole.clone();
+            mutant(&mut lines);
+            forged(&place, &lines);
+            let Some((code, said)) = verified(&file) else { return };
+            assert_eq!((code, said.matches("refused").count()), (1, 1), "{}\n{said}", lines[at]);
+            tried += 1;
+        }
+    }
+    assert!(tried > 35, "{tried}");
+}
