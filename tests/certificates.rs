@@ -18,6 +18,9 @@ fn verified(file: &Path) -> Option<(i32, String)> {
     Some((status.code()?, String::from_utf8_lossy(&[stdout, stderr].concat()).into_owned()))
 }
 
+/// A change of the lines of a certificate.
+type Mutant = Box<dyn Fn(&mut Vec<Value>)>;
+
 /// Ten throws of a coin in continuous time.
 const COIN: &str = "
 horizon = 10 s
@@ -48,7 +51,8 @@ compare E(coin.heads at 5 s) in 0 .. 10 under p = 0.5 with p = 0.9
 
 /// The lines of a certificate of the coin, without the digest.
 fn lines(place: &Place, words: &[&str]) -> Vec<Value> {
-    let said = place.call(&[&["check", "coin.scn", "rules.bltl", "--certificate", "coin.smcc"], words].concat());
+    let said =
+        place.call(&[&["check", "coin.scn", "rules.bltl", "--certificate", "coin.smcc"], words].concat());
     assert!(said.code.is_some_and(|code| code < 2 || code == 3), "{}", said.err);
     let text = std::fs::read_to_string(place.path("coin.smcc")).unwrap();
     let mut lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -93,7 +97,7 @@ fn what_does_not_follow_from_the_outcomes_is_refused() {
     let mut tried = 0;
     for &at in &results {
         let kind = whole[at]["result"]["kind"].as_str().unwrap().to_owned();
-        let mut mutants: Vec<Box<dyn Fn(&mut Vec<Value>)>> = vec![
+        let mut mutants: Vec<Mutant> = vec![
             // One trial less, or a narrower claim.
             Box::new(move |lines| {
                 let trials = lines[at]["result"]["trials"].as_u64().unwrap();

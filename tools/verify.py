@@ -456,6 +456,45 @@ def compare(result, ask, claim, first, second):
     bounded(result, claim, *found, error)
 
 
+def rank(result, ask, claim, lines):
+    """The choice is within the gap of every option: paired bets on each rival, which is taken to hold where it has no trial. Options
+    that left the race were worse than another one, on the trials that both had."""
+    rule, kind = result["method"], ask["rank"]
+    low, high = kind.get("range", (0.0, 1.0))
+    scale = lambda v: (0.0, 1.0) if v is None else (min(max((v - low) / (high - low), 0), 1),) * 2
+    table = {}
+    for line in lines:
+        lost = set(line["unresolved"])
+        values = line.get("values") or [None if k in lost else float(t) for k, t in enumerate(line["truths"])]
+        table[line["option"]] = [scale(v) for v in values]
+    told = (claim or {}).get("claim", {}).get("Best")
+    if not told:
+        raise Refused("a ranking without a choice is not certified") if claim else KeyError("no claim")
+    choice, gap = told["choice"], told["gap"] / (high - low)
+    threshold = math.log(max(len(table) - 1, 1) / rule["delta"])
+    epsilon = rule["epsilon"] / (high - low)
+    bets = [math.exp(math.log(0.02) + k / 11 * math.log(0.95 / 0.02)) for k in range(12)]
+
+    def evidence(rival, leader, gap, is_completed):
+        least = max(epsilon, 0.25)
+        part = (1 - least) / max(1 - gap, 1e-6) if gap > least else 1.0
+        own, other = table[leader], table[rival]
+        count = len(own) if is_completed else min(len(own), len(other))
+        differences = {}
+        for k in range(count):
+            d = (other[k][1] if k < len(other) else 1.0) - own[k][0]
+            differences[d] = differences.get(d, 0) + 1
+        logs = [sum(n * math.log(1 + bet * part * (gap - d)) for d, n in differences.items()) for bet in bets]
+        return max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs) / len(logs))
+
+    for rival in table:
+        close = rival == choice or any(evidence(rival, choice, gap, whole) >= threshold - 1e-6 for whole in (False, True))
+        if not close and not any(evidence(rival, other, 0.0, False) >= threshold - 1e-6 for other in table if other != rival):
+            raise Refused(f"`{rival}` may be better than `{choice}` by more than {told['gap']}")
+    if claim["error"] < rule["delta"] - 1e-12:
+        raise Refused(f"the error is {rule['delta']}, not {claim['error']}")
+
+
 # The file.
 
 
@@ -497,6 +536,8 @@ def verified(entry, lines):
         expectation(result, ask, claim, lines[0])
     elif "estimate" in ask and kind == "quantile":
         quantile(result, ask, claim, lines[0])
+    elif "rank" in ask and name in ("betting", "one_challenger") and kind in ("probability", "mean") and not ask["beside"]:
+        rank(result, ask, claim, lines)
     elif "compare" in ask and kind in ("probability", "mean"):
         compare(result, ask, claim, *lines)
     else:

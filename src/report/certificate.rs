@@ -39,7 +39,7 @@ pub fn text(study: &Study, run: &CallResult, kept: &Kept) -> String {
         let queries = queries(study, result);
         let mut fields = json::result(result);
         if let Value::Object(fields) = &mut fields {
-            LEFT_OUT.iter().for_each(|name| drop(fields.shift_remove(*name)));
+            fields.retain(|name, _| !LEFT_OUT.contains(&name.as_str()));
         }
         let asks: Vec<Value> = queries.iter().map(|query| asked(&query.ask)).collect();
         lines.push(json!({ "result": fields, "claim": result.certificate, "ask": asks }));
@@ -50,11 +50,10 @@ pub fn text(study: &Study, run: &CallResult, kept: &Kept) -> String {
             }
             if let Ask::Estimate { measure, level: Some(_), .. } = &query.ask {
                 let runs = kept.runs(measure.target.world);
-                let run = |(run, record): &(_, crate::engine::shards::RunRecord)| {
-                    let run: &crate::engine::shards::SplitRun = run;
-                    json!([run.branch, run.lost_reaches, record.estimate])
-                };
-                lines.push(json!({ "runs": result.asked.index, "estimates": runs.iter().map(run).collect::<Vec<_>>() }));
+                let runs =
+                    runs.iter().map(|(run, found)| json!([run.branch, run.lost_reaches, found.estimate]));
+                let runs: Vec<Value> = runs.collect();
+                lines.push(json!({ "runs": result.asked.index, "estimates": runs }));
             }
         }
     }
