@@ -400,6 +400,29 @@ def bounded(result, claim, low, high, error):
         raise Refused(f"the claim is {claim}")
 
 
+def check_mean(result, ask, claim, outcomes):
+    """The sequence holds at all times, so the test stops once it lies on one side of the threshold."""
+    rule, theta, span = result["method"], ask["theta"], ask["check"]["range"]
+    (low, high), ends, stop = span, [Sequence(rule["delta"], None) for _ in range(2)], None
+    for n, value in enumerate(outcomes["values"], 1):
+        for end, v in zip(ends, span if value is None else (value, value)):
+            end.push((min(max(v, low), high) - low) / (high - low))
+        (a, b), (c, d) = (end.ends(None, 0, None) for end in ends)
+        a, b = (min(max(low + (high - low) * x, low), high) for x in (min(a, c), max(b, d)))
+        if a > theta or b < theta:
+            stop = n
+            break
+    if result["trials"] != (stop or len(outcomes["values"])):
+        raise Refused(f"the rule stops after {stop} trials, not {result['trials']}")
+    near(a, result["low"], "the lower end")
+    near(b, result["high"], "the upper end")
+    verdict = "undecided" if not stop else "satisfied" if (a > theta) == ask["at_least"] else "violated"
+    if stop and (result["verdict"] != verdict or claim["claim"]["Decided"] != {"Above" if a > theta else "Below": theta} or claim["error"] < rule["delta"] - 1e-12):
+        raise Refused(f"the outcomes say {verdict}, at an error of {rule['delta']}")
+    if not stop and result["verdict"] in ("satisfied", "violated"):
+        raise Refused("the outcomes decide nothing")
+
+
 def quantile(result, ask, claim, outcomes):
     """Order statistics: ranks from binomial tails; or from the band of Dvoretzky, Kiefer and Wolfowitz (Massart 1990)."""
     rule, q, values = result["method"], ask["estimate"]["level"], outcomes["values"]
@@ -530,6 +553,8 @@ def verified(entry, lines):
     kind = next((ask[word]["kind"] for word in ("check", "estimate", "compare", "rank") if word in ask), "")
     if "check" in ask and kind == "probability" and name in TESTS:
         check(result, ask, claim, lines[0])
+    elif "check" in ask and kind == "mean":
+        check_mean(result, ask, claim, lines[0])
     elif "estimate" in ask and kind == "probability" and name in ESTIMATES:
         estimate(result, ask, claim, lines[0])
     elif "estimate" in ask and kind == "mean":
