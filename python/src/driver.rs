@@ -173,21 +173,22 @@ struct Asked {
 impl Asked {
     /// Keeps an exception, if it is that of the first trial.
     fn failed(&self, py: Python<'_>, error: &PyErr, seen: &Seen<'_>) {
-        if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+        let trial = seen.key.index;
+        let first = || self.ledger.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_known = || first().as_ref().is_some_and(|(known, _)| *known <= trial);
+        if error.is_instance_of::<PyKeyboardInterrupt>(py) || is_known() {
             return;
         }
-        // Before the lock: where Python formats, another thread may get the interpreter and wait for the lock with it.
+        // Without the lock: where Python formats, another thread may get the interpreter and wait for the lock with it.
         let name = &seen.scenario.agents[seen.agent.0 as usize].name;
         let trace = error.traceback(py).and_then(|trace| trace.format().ok()).unwrap_or_default();
-        let (trial, time) = (seen.key.index, (seen.time * 1e6).round() / 1e6);
+        let time = (seen.time * 1e6).round() / 1e6;
         let said = format!(
             "the driver of `{name}` failed in trial {trial} at {time} s, which is unresolved:\n{trace}{error}"
         );
-        let mut first = self.ledger.failure.lock().unwrap_or_else(PoisonError::into_inner);
-        if first.as_ref().is_some_and(|(known, _)| *known <= trial) {
-            return;
+        if !is_known() {
+            *first() = Some((trial, said));
         }
-        *first = Some((trial, said));
     }
 
     /// Whether an answer differs from that of the same trial before.
