@@ -19,8 +19,8 @@ const HAIR: f64 = 1e-6;
 #[derive(Clone, Debug, Default)]
 pub struct Stairwells {
     storeys: Storeys,
-    /// The portals by which each island is left.
-    out: Vec<Vec<usize>>,
+    /// The portals by which each island is left, each with a point of its line and the direction in which it is crossed.
+    out: Vec<Vec<(usize, Vec2, Vec2)>>,
 }
 
 /// Somebody who crosses a line.
@@ -84,7 +84,9 @@ impl Stairwells {
     /// Of a scene.
     pub(super) fn new(scene: &Scene) -> Self {
         let storeys = scene.storeys.clone();
-        let out = (0..storeys.islands.len()).map(|island| storeys.out_of(island).collect()).collect();
+        let gate = |portal: usize| (portal, storeys.portals[portal].line.a, storeys.portals[portal].across);
+        let out =
+            (0..storeys.islands.len()).map(|island| storeys.out_of(island).map(gate).collect()).collect();
         Self { storeys, out }
     }
 
@@ -135,8 +137,12 @@ impl Stairwells {
             for lane in (moved & state.present[block]).iter() {
                 let island = state.whereabouts.island[block].0[lane] as usize;
                 let slot = Slot { block, lane };
-                let steps = (Vec2::new(x[block].0[lane], y[block].0[lane]), state.position(slot));
-                for &portal in &self.out[island] {
+                let to = state.position(slot);
+                for &(portal, a, across) in &self.out[island] {
+                    if (to - a).dot(&across) <= 0.0 {
+                        continue;
+                    }
+                    let steps = (Vec2::new(x[block].0[lane], y[block].0[lane]), to);
                     let is_flight = self.storeys.islands[island].height.is_none();
                     if let Some((share, beyond)) = crossed(&self.storeys.portals[portal], is_flight, steps) {
                         crossings.push(Crossing { slot, portal, share, beyond });

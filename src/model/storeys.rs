@@ -75,6 +75,9 @@ impl Storeys {
 
     /// The island on which, or nearest to which, a place lies.
     pub fn island_at(&self, p: Vec2) -> usize {
+        if let Some(here) = self.islands.iter().position(|island| island.bounds.contains(p)) {
+            return here;
+        }
         let far = self.islands.iter().map(|island| island.bounds.distance(p)).enumerate();
         far.reduce(|a, b| if b.1 < a.1 { b } else { a }).map_or(0, |(k, _)| k)
     }

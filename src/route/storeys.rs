@@ -42,15 +42,24 @@ impl Atlas {
         let mut best = self.way_on(here, from, goal, radius).map(|way| (way.length, way, None));
         let known = self.behind.place((super::atlas::key(goal), radius.to_bits(), climbs.to_bits()));
         let behind = known.get_or_init(|| self.times(goal, radius, climbs));
-        for number in storeys.out_of(here).filter(|number| behind[*number].is_finite()) {
-            let portal = &storeys.portals[number];
-            let (to, slowness) = (middle(&portal.line), slowness(portal.approach, climbs));
-            // No way is shorter than the straight line.
-            let least = (to - from).norm() * slowness + behind[number];
+        // No way is shorter than the straight line, and the shortest of those comes first.
+        let mut out: Vec<(f64, usize)> = storeys
+            .out_of(here)
+            .map(|number| {
+                let portal = &storeys.portals[number];
+                let slowness = slowness(portal.approach, climbs);
+                ((middle(&portal.line) - from).norm() * slowness + behind[number], number)
+            })
+            .filter(|(least, _)| least.is_finite())
+            .collect();
+        out.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for (least, number) in out {
             if best.as_ref().is_some_and(|best| best.0 < least) {
-                continue;
+                break;
             }
-            let Some(way) = island.way(from, &Goal::Point(to), radius) else { continue };
+            let portal = &storeys.portals[number];
+            let slowness = slowness(portal.approach, climbs);
+            let Some(way) = island.way(from, &Goal::Point(middle(&portal.line)), radius) else { continue };
             let time = way.length * slowness + behind[number];
             if best.as_ref().is_none_or(|best| time < best.0) {
                 best = Some((time, way, Some(number)));

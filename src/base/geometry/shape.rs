@@ -39,6 +39,11 @@ impl Bounds {
         })
     }
 
+    /// Whether `p` lies inside or on the rim.
+    pub fn contains(&self, p: Vec2) -> bool {
+        self.low.x <= p.x && p.x <= self.high.x && self.low.y <= p.y && p.y <= self.high.y
+    }
+
     /// Distance from `p` to the rectangle, 0 inside.
     pub fn distance(&self, p: Vec2) -> f64 {
         (self.low - p).sup(&(p - self.high)).sup(&Vec2::zeros()).norm()
