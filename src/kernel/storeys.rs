@@ -45,24 +45,24 @@ impl Landings {
     /// Of the crossings of a step.
     fn of(storeys: &Storeys, state: &State, crossings: &[Crossing]) -> Self {
         let mut near = vec![Vec::new(); storeys.portals.len()];
-        // The portals that lead to each island, and how far from their lines somebody can be touched there.
-        let mut into: Vec<Vec<(usize, f64)>> = vec![Vec::new(); storeys.islands.len()];
+        // The portals that lead to each island, with their landings, and how far from those somebody can be touched there.
+        let mut into: Vec<Vec<(usize, Vec2, Vec2, f64)>> = vec![Vec::new(); storeys.islands.len()];
         for one in crossings {
             let reach = one.beyond + one.slot.of(&state.bodies[Parameter::Radius]);
-            let known = &mut into[storeys.portals[one.portal].islands[1] as usize];
-            match known.iter_mut().find(|(portal, _)| *portal == one.portal) {
-                Some((_, most)) => *most = if reach > *most { reach } else { *most },
-                None => known.push((one.portal, reach)),
+            let Portal { landing, onward, islands, .. } = &storeys.portals[one.portal];
+            let known = &mut into[islands[1] as usize];
+            match known.iter_mut().find(|known| known.0 == one.portal) {
+                Some((.., most)) => *most = if reach > *most { reach } else { *most },
+                None => known.push((one.portal, landing.a, *onward, reach)),
             }
         }
         for (block, present) in state.present.iter().enumerate() {
             for lane in present.iter() {
                 let slot = Slot { block, lane };
-                for (portal, reach) in &into[slot.of(&state.whereabouts.island) as usize] {
-                    let Portal { landing, onward, .. } = &storeys.portals[*portal];
-                    let behind = (state.position(slot) - landing.a).dot(onward);
+                for &(portal, a, onward, reach) in &into[slot.of(&state.whereabouts.island) as usize] {
+                    let behind = (state.position(slot) - a).dot(&onward);
                     if behind < reach + slot.of(&state.bodies[Parameter::Radius]) {
-                        near[*portal].push(slot);
+                        near[portal].push(slot);
                     }
                 }
             }

@@ -85,7 +85,11 @@ impl Storeys {
     /// Whether two places lie on different islands.
     pub fn separate(&self, a: Vec2, b: Vec2) -> bool {
         // Different islands are farther apart.
-        !self.are_none() && (a - b).norm() > 0.5 * APART && self.island_at(a) != self.island_at(b)
+        if self.are_none() || (a - b).norm() <= 0.5 * APART {
+            return false;
+        }
+        let here = self.island_at(a);
+        !self.islands[here].bounds.contains(b) && self.island_at(b) != here
     }
 
     /// The island on which a place lies, and its coordinates there; none without levels.
