@@ -461,7 +461,7 @@ def difference(low_pairs, error):
 
 def compare(result, ask, claim, first, second):
     rule, error = result["method"], ask["delta"]
-    if ask["compare"]["kind"] == "mean":
+    if "range" in ask["compare"]:
         (low, high), pairs = ask["compare"]["range"], []
         clip = lambda v: (low, high) if v is None else (min(max(v, low), high),) * 2
         for a, b in zip(first["values"], second["values"]):
@@ -533,6 +533,8 @@ def unpacked(line):
             line["truths"] += [k % 2 == 1] * length
     elif "bits" in line:
         data = base64.b64decode(line["bits"], validate=True)
+        if len(data) != -(-count // 8):
+            raise Unreadable("bits and count differ")
         line["truths"] = [data[k // 8] >> k % 8 & 1 == 1 for k in range(count)]
     else:
         line["values"] = [float(v) if isinstance(v, str) else v for v in line["values"]]
@@ -541,29 +543,36 @@ def unpacked(line):
     return line
 
 
+def asked(query):
+    """What a query asks: check, estimate, compare or rank; of which kind of number, in which range."""
+    ((word, ask),) = query["ask"].items()
+    measure = ask.get("measure") or ask["first"]
+    kind = {"expectation": "mean" if measure.get("level") is None else "tail"}.get(measure["kind"], measure["kind"])
+    return word, kind, {**ask, word: measure, "theta": ask.get("threshold")}
+
+
 def verified(entry, lines):
     """Checks a result; whether its rule is one of those that are checked here."""
-    result, claim, asks = entry["result"], entry["claim"], entry["ask"]
-    if len(asks) != 1:
+    result, claim, queries = entry["result"], entry["claim"], entry["queries"]
+    if len(queries) != 1:
         return False
-    ask, name = asks[0], result["method"]["name"]
+    (word, kind, ask), name = asked(queries[0]), result["method"]["name"]
     counts = [line["count"] for line in lines]
-    if sum(counts) != result["trials"] and result["kind"] != "rank":
+    if sum(counts) != result["trials"] and word != "rank":
         raise Refused(f"{sum(counts)} outcomes for {result['trials']} trials")
-    kind = next((ask[word]["kind"] for word in ("check", "estimate", "compare", "rank") if word in ask), "")
-    if "check" in ask and kind == "probability" and name in TESTS:
+    if word == "check" and kind == "probability" and name in TESTS:
         check(result, ask, claim, lines[0])
-    elif "check" in ask and kind == "mean":
+    elif word == "check" and kind == "mean":
         check_mean(result, ask, claim, lines[0])
-    elif "estimate" in ask and kind == "probability" and name in ESTIMATES:
+    elif word == "estimate" and kind == "probability" and name in ESTIMATES:
         estimate(result, ask, claim, lines[0])
-    elif "estimate" in ask and kind == "mean":
+    elif word == "estimate" and kind == "mean":
         expectation(result, ask, claim, lines[0])
-    elif "estimate" in ask and kind == "quantile":
+    elif word == "estimate" and kind == "quantile":
         quantile(result, ask, claim, lines[0])
-    elif "rank" in ask and name in ("betting", "one_challenger") and kind in ("probability", "mean") and not ask["beside"]:
+    elif word == "rank" and name in ("betting", "one_challenger") and kind in ("probability", "mean") and not ask["beside"] and ask["models"] == 1:
         rank(result, ask, claim, lines)
-    elif "compare" in ask and kind in ("probability", "mean"):
+    elif word == "compare" and kind in ("probability", "mean"):
         compare(result, ask, claim, *lines)
     else:
         return False
@@ -605,7 +614,7 @@ def main(path):
             at += 1
         result = entry["result"]
         try:
-            known = verified(entry, [unpacked(line) for line in own if "outcomes" in line])
+            known = verified(entry, [unpacked(line) for line in own if "count" in line])
             word = "right" if known else f"not checked: {result['method']['name']}"
             unknown += not known
         except (Refused, Unreadable, KeyError, ValueError, IndexError, TypeError, ZeroDivisionError) as error:

@@ -1,9 +1,10 @@
 //! Dimensions: the exponents of kilogram, metre, second, angle and step.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Exponents of (kg, m, s, angle, step).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Dimension(pub [i8; 5]);
 
 impl Dimension {

@@ -74,6 +74,8 @@ pub enum Purpose {
     Search = 15,
     /// Times at which doors open and close.
     Door = 16,
+    /// Trials that a verifier runs again.
+    Audit = 17,
     /// Synthetic data and tests.
     Test = 255,
 }

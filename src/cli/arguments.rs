@@ -44,6 +44,8 @@ pub(super) enum Verb {
     Check(Box<Check>),
     /// Show how a scenario and its property files were understood.
     Show(Show),
+    /// Verify a certificate: recompute its results from their outcomes, and run some of its trials again.
+    Verify(Box<VerifyCommand>),
     /// Draw a figure of results as SVG: a sweep, a ranking, a distribution, how evidence grew, calibration.
     Plot(PlotCommand),
     /// Run trials of a scenario and write their traces.
@@ -87,7 +89,7 @@ pub(super) enum Verb {
 
 /// The verbs in groups, as the help shows them.
 const GROUPS: [(&str, &[&str]); 7] = [
-    ("Ask", &["check", "show", "plot"]),
+    ("Ask", &["check", "verify", "show", "plot"]),
     ("Look", &["simulate", "path", "walk"]),
     ("Recordings", &["infer", "measure", "monitor", "evaluate", "calibrate", "fit", "advise", "drift"]),
     ("Gait", &["gait"]),
@@ -204,6 +206,37 @@ pub(super) struct Check {
         conflicts_with_all = ["launch", "forecast", "timeout", "set", "data", "models", "calibration", "velocity", "allow_run"]
     )]
     pub(super) outcomes: Option<String>,
+}
+
+/// `smc verify`
+#[derive(Args, Debug)]
+pub(super) struct VerifyCommand {
+    /// The certificate.
+    pub(super) certificate: String,
+    /// The scenario and its property files, if they are to be compared with those of the certificate, too.
+    #[arg(value_name = "SCENARIO> <PROPERTIES>...")]
+    pub(super) files: Vec<String>,
+    /// Run so many trials again, which are drawn at random from all of the certificate, and compare their outcomes.
+    #[arg(long, value_name = "N", value_parser = parse_count, requires = "files")]
+    pub(super) audit: Option<u64>,
+    /// Draw the trials of the audit by this number, to repeat one; a number of the system unless set.
+    #[arg(long, value_name = "SEED", requires = "audit")]
+    pub(super) audit_seed: Option<u64>,
+    /// Also search this folder for recordings and imports. May be given several times.
+    #[arg(long, value_name = "DIR")]
+    pub(super) data: Vec<PathBuf>,
+    /// The file of `smc calibrate` that the call had.
+    #[arg(long, value_name = "FILE")]
+    pub(super) calibration: Option<String>,
+    /// Let the program of a scenario run.
+    #[arg(long)]
+    pub(super) allow_run: bool,
+    /// Threads.
+    #[command(flatten)]
+    pub(super) cores: Cores,
+    /// Format on standard output.
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
 }
 
 /// `smc merge`

@@ -200,7 +200,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
             }
             run.inputs.clone_from(&reporter.prints);
             if let (Some(kept), Some(path)) = (&kept, certificate) {
-                let text = report::certificate::text(study, &run, kept);
+                let text = report::certificate::text(study, &call(), &budget, &run, kept);
                 if let Err(error) = output::save(path, text.as_bytes()) {
                     return reporter.refuse(error);
                 }

@@ -39,6 +39,13 @@ pub(super) fn input(title: impl Into<String>) -> Diagnostic {
         .hint("file names are relative to the current folder; `-` is standard input")
 }
 
+/// A certificate cannot be read, or is one of other inputs.
+pub(super) fn certificate(title: impl Into<String>) -> Diagnostic {
+    Diagnostic::placeless(Code::E0730, title).hint(
+        "`smc check … --certificate FILE` writes one; verify it beside the files and folders of that call",
+    )
+}
+
 /// The time limit ended the call; `when` begins with a blank.
 pub(super) fn late(when: &str) -> Diagnostic {
     Diagnostic::placeless(Code::E0921, format!("the time limit ended the call{when}"))

@@ -30,6 +30,7 @@ mod show;
 mod simulate;
 mod terminal;
 mod values;
+mod verify;
 mod walk;
 
 use crate::engine::outcome::Failure;
@@ -108,6 +109,7 @@ fn dispatch(verb: &Verb, colors: Colors) -> Exit {
             within(command.limit);
             show::run(command, colors)
         }
+        Verb::Verify(command) => verify::run(command, colors),
         Verb::Plot(command) => ended(plot::run(command)),
         Verb::Simulate(command) => {
             within(command.limit);

@@ -9,6 +9,7 @@ use crate::logic::{Root, Tree};
 use crate::model::{AgentId, Body, Bool, Num, Scenario};
 use crate::stats::Chosen;
 use crate::syntax::source::Span;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -73,7 +74,7 @@ pub struct Column {
 }
 
 /// A column of a world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Target {
     /// Index of the world.
     pub world: usize,
@@ -82,7 +83,7 @@ pub struct Target {
 }
 
 /// One question.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Query {
     /// Number of the query in the call, from 0; a list of estimates takes several.
     pub index: usize,
@@ -93,6 +94,7 @@ pub struct Query {
     /// What it is about, as one would say it.
     pub said: Said,
     /// Where.
+    #[serde(skip)]
     pub span: Span,
     /// Parameter values that hold for it alone (sweep, `under`).
     pub settings: Vec<(String, String)>,
@@ -110,7 +112,7 @@ pub struct Query {
 }
 
 /// One of several values of a parameter under each of which something is asked.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Every {
     /// The parameter.
     pub name: String,
@@ -121,7 +123,7 @@ pub struct Every {
 }
 
 /// A measure as one would say it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Said {
     /// `P(safe)`
     pub measure: String,
@@ -130,12 +132,12 @@ pub struct Said {
 }
 
 /// `metric <= bound`, or with `<`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Event {
     /// What is compared.
     pub metric: String,
     /// `<=` or `<`.
-    pub relation: &'static str,
+    pub relation: String,
     /// With what.
     pub bound: String,
 }
@@ -147,7 +149,8 @@ impl std::fmt::Display for Event {
 }
 
 /// What is asked.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Ask {
     /// Is a measure above or below a threshold?
     Check {
@@ -222,7 +225,7 @@ impl Ask {
 }
 
 /// An option of a ranking: a world, and a move in it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RankOption {
     /// Its name: `heading 15 deg`, `lane = 2 m`.
     pub label: String,
@@ -235,22 +238,30 @@ pub struct RankOption {
     /// The declaration of moves and its option that is followed, if any.
     pub advice: Option<(usize, usize)>,
     /// Of options that all carry the certificate, the one with the least number is chosen.
+    #[serde(deserialize_with = "or_infinite")]
     pub deviation: f64,
 }
 
+/// JSON has no infinity: it is written as `null`.
+fn or_infinite<'d, D: Deserializer<'d>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
+}
+
 /// What is asked of the options of a ranking besides their score.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Beside {
     /// As one would say it: `P(together)`.
     pub said: String,
     /// Which number of the distribution.
+    #[serde(flatten)]
     pub kind: MeasureKind,
     /// What for.
     pub role: Role,
 }
 
 /// The role of what is asked besides a score.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Role {
     /// An option has to satisfy it.
     Constraint {
@@ -269,16 +280,18 @@ pub enum Role {
 }
 
 /// A number of the distribution of traces.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measure {
     /// What is observed of each trace.
     pub target: Target,
     /// Which number of its distribution.
+    #[serde(flatten)]
     pub kind: MeasureKind,
 }
 
 /// Which number of the distribution.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum MeasureKind {
     /// Probability of a formula.
     Probability,

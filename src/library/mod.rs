@@ -17,6 +17,7 @@ pub mod program;
 mod refusal;
 mod report;
 mod trial;
+pub mod verify;
 mod ways;
 
 pub use diagnostics::{Diagnostics, findings};

@@ -134,7 +134,7 @@ impl Draft {
     }
 
     /// Compiles the scenario, perhaps with property files.
-    fn compiled(&self, properties: &[(&str, &str)]) -> Result<(Study, Inputs), Diagnostics> {
+    pub(super) fn compiled(&self, properties: &[(&str, &str)]) -> Result<(Study, Inputs), Diagnostics> {
         let names: Vec<String> = properties.iter().map(|(name, _)| (*name).to_owned()).collect();
         let settings = self.assignments();
         let mut given = Given { draft: self, properties };

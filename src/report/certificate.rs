@@ -1,6 +1,6 @@
 //! Certificates: a text file of lines by which a stranger checks the results of a call. Each line is a JSON object: the head, for
 //! each result what was asked, by which rule, and what it claims, then its outcomes in the order of their trials; and at the end
-//! the SHA-256 of all lines before. `docs/proofs.md` describes the fields, `tools/verify.py` reads them.
+//! the SHA-256 of all lines before. `docs/proofs.md` describes the fields; `smc verify` and `tools/verify.py` read them.
 //!
 //! Truth values are runs (how often false, then how often true, and so on) or bits in base64, the first trial in the lowest
 //! bit of the first byte; whichever is shorter.
@@ -9,51 +9,106 @@ use super::json;
 use crate::base::digest::Digest;
 use crate::base::random;
 use crate::compile::Study;
-use crate::compile::study::{Ask, Measure, MeasureKind, Query, Role};
+use crate::compile::study::{Ask, Measure, Query, RankOption};
 use crate::engine::outcome::{CallResult, QueryResult};
-use crate::engine::shards::{Column, Kept};
+use crate::engine::shards::{Column, Kept, RunRecord, SplitRun};
+use crate::engine::{Budget, Call};
 use crate::trials::cell::Reading;
 use base64::{Engine, prelude::BASE64_STANDARD};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
+use thiserror::Error;
 
 /// The first field of a certificate: what it is, and the version of its format.
 const FORMAT: &str = "certificate 1";
 /// Fields of a result that are no part of its claim.
 const LEFT_OUT: [&str; 6] = ["witnesses", "replay", "elapsed_s", "evidence", "distribution", "steps"];
+/// Most outcomes of a line that are read.
+const MOST: u64 = 1 << 28;
+
+/// What the results of a certificate are of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Head {
+    /// The format, and its version.
+    smc: String,
+    /// Version of the program.
+    pub version: String,
+    /// The scenario.
+    pub scenario: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// The generator of random numbers, and how it is addressed.
+    pub generator: (String, u32),
+    /// Input files with their digests.
+    pub inputs: Vec<(String, String)>,
+    /// The presets of people.
+    pub people: Vec<String>,
+    /// Values of `--set`.
+    pub settings: Vec<String>,
+    /// Value of `--velocity`.
+    pub velocity: Option<String>,
+    /// Values of `--models`.
+    pub models: Vec<String>,
+    /// Largest number of trials of a query.
+    pub max_trials: u64,
+    /// Largest number of trials of a ranking.
+    pub total_trials: Option<u64>,
+}
+
+/// A result with what it was found from.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Its fields, as in the JSON report.
+    pub result: Value,
+    /// What it certifies, in numbers.
+    pub claim: Value,
+    /// What was asked: one query, or one for each value of a parameter.
+    pub queries: Vec<Query>,
+    /// The outcomes of each column.
+    pub outcomes: Vec<(Column, Vec<Reading>)>,
+    /// The runs of splitting.
+    pub runs: Vec<(SplitRun, RunRecord)>,
+}
+
+/// Why a text is no certificate.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Unreadable(String);
+
+fn unreadable(reason: impl Into<String>) -> Unreadable {
+    Unreadable(reason.into())
+}
 
 /// The certificate of a call whose outcomes were kept.
-pub fn text(study: &Study, run: &CallResult, kept: &Kept) -> String {
-    let inputs: Vec<Value> =
-        run.inputs.iter().map(|(file, print)| json!([file, print.to_string()])).collect();
-    let mut lines = vec![json!({
-        "smc": FORMAT,
-        "version": run.version,
-        "scenario": run.scenario,
-        "seed": run.seed,
-        "generator": [random::GENERATOR, random::LAYOUT],
-        "inputs": inputs,
-        "people": run.people,
-    })];
+pub fn text(study: &Study, call: &Call<'_>, budget: &Budget, run: &CallResult, kept: &Kept) -> String {
+    let line = &call.line;
+    let head = Head {
+        smc: FORMAT.to_owned(),
+        version: run.version.clone(),
+        scenario: run.scenario.clone(),
+        seed: run.seed,
+        generator: (random::GENERATOR.to_owned(), random::LAYOUT),
+        inputs: run.inputs.iter().map(|(file, print)| (file.clone(), print.to_string())).collect(),
+        people: run.people.iter().map(ToString::to_string).collect(),
+        settings: line.settings.clone(),
+        velocity: line.velocity.clone(),
+        models: line.models.clone(),
+        max_trials: budget.max_trials,
+        total_trials: budget.max_total,
+    };
+    let mut lines = vec![json!(head)];
     for result in &run.results {
         let queries = queries(study, result);
-        let mut fields = json::result(result);
-        if let Value::Object(fields) = &mut fields {
-            fields.retain(|name, _| !LEFT_OUT.contains(&name.as_str()));
-        }
-        let asks: Vec<Value> = queries.iter().map(|query| asked(&query.ask)).collect();
-        lines.push(json!({ "result": fields, "claim": result.certificate, "ask": asks }));
-        for (number, query) in queries.iter().enumerate() {
-            for (option, measure, column, count) in columns(&query.ask, result) {
-                let head = json!({ "outcomes": result.asked.index, "ask": number, "option": option, "measure": measure });
+        lines.push(json!({ "result": fields(result), "claim": result.certificate, "queries": queries }));
+        for query in &queries {
+            for (option, column) in columns(&query.ask) {
+                let head = json!({ "option": option, "column": column });
+                let count = count(result, queries.len(), option.as_deref());
                 lines.push(json::joined([head, packed(&kept.readings(column, count))]));
             }
             if let Ask::Estimate { measure, level: Some(_), .. } = &query.ask {
-                let runs = kept.runs(measure.target.world);
-                let runs =
-                    runs.iter().map(|(run, found)| json!([run.branch, run.lost_reaches, found.estimate]));
-                let runs: Vec<Value> = runs.collect();
-                lines.push(json!({ "runs": result.asked.index, "estimates": runs }));
+                lines.push(json!({ "runs_of_splitting": kept.runs(measure.target.world) }));
             }
         }
     }
@@ -66,81 +121,103 @@ pub fn text(study: &Study, run: &CallResult, kept: &Kept) -> String {
     text
 }
 
+/// Reads a certificate.
+///
+/// # Errors
+/// If the text is none, or was changed.
+pub fn read(text: &str) -> Result<(Head, Vec<Entry>), Unreadable> {
+    let body = text.trim_end().rfind('\n').map_or(0, |at| at + 1);
+    let digest =
+        || Some(serde_json::from_str::<Value>(&text[body..]).ok()?.get("digest")?.as_str()?.to_owned());
+    let digest = digest()
+        .ok_or_else(|| unreadable("its last line has no digest: it is cut short, or is no certificate"))?;
+    if digest != Digest::of(&text.as_bytes()[..body]).to_string() {
+        return Err(unreadable("its digest does not match: it was changed"));
+    }
+    let mut lines = text[..body].lines().map(|line| {
+        serde_json::from_str::<Value>(line)
+            .map_err(|error| unreadable(format!("a line is not JSON: {error}")))
+    });
+    let first = lines.next().ok_or_else(|| unreadable("it is empty"))??;
+    match first["smc"].as_str() {
+        Some(FORMAT) => {}
+        other => {
+            return Err(unreadable(format!("it is `{}`, not `{FORMAT}`", other.unwrap_or("nothing known"))));
+        }
+    }
+    let mut entries: Vec<Entry> = Vec::new();
+    for line in lines {
+        let mut line = line?;
+        if line.get("result").is_some() {
+            let [result, claim, queries] = ["result", "claim", "queries"].map(|name| line[name].take());
+            let (outcomes, runs) = (Vec::new(), Vec::new());
+            entries.push(Entry { result, claim, queries: known(queries)?, outcomes, runs });
+            continue;
+        }
+        let entry = entries.last_mut().ok_or_else(|| unreadable("outcomes stand before the first result"))?;
+        match line.get_mut("runs_of_splitting") {
+            Some(runs) => entry.runs.extend(known::<Vec<_>>(runs.take())?),
+            None => entry.outcomes.push((known(line["column"].take())?, unpacked(line)?)),
+        }
+    }
+    Ok((known(first)?, entries))
+}
+
+fn known<T: serde::de::DeserializeOwned>(value: Value) -> Result<T, Unreadable> {
+    serde_json::from_value(value).map_err(|error| unreadable(format!("a line does not fit: {error}")))
+}
+
+/// The fields of a result that a certificate has.
+pub fn fields(result: &QueryResult) -> Value {
+    let mut fields = json::result(result);
+    if let Value::Object(fields) = &mut fields {
+        fields.retain(|name, _| !LEFT_OUT.contains(&name.as_str()));
+    }
+    fields
+}
+
 /// The queries that a result answers: one, or all under every value of a parameter.
-fn queries<'s>(study: &'s Study, result: &QueryResult) -> Vec<&'s Query> {
+pub fn queries<'s>(study: &'s Study, result: &QueryResult) -> Vec<&'s Query> {
     let of_index = study.queries.iter().filter(|query| query.index == result.asked.index);
     let (own, others): (Vec<_>, Vec<_>) = of_index.partition(|query| query.settings == result.asked.settings);
     if own.is_empty() { others } else { own }
 }
 
-/// What a query asks, in numbers.
-fn asked(ask: &Ask) -> Value {
-    match ask {
-        Ask::Check { measure: of, at_least, or_equal, threshold, beside, .. } => json!({
-            "check": measure(of), "at_least": at_least, "or_equal": or_equal, "theta": threshold, "beside": beside,
-        }),
-        Ask::Estimate { measure: of, .. } => json!({ "estimate": measure(of) }),
-        Ask::Compare { first, within, delta, .. } => {
-            json!({ "compare": measure(first), "within": within, "delta": delta })
-        }
-        Ask::Rank { measure: of, models, beside, .. } => {
-            let role = |role: &Role| match role {
-                Role::Constraint { at_least, threshold, .. } => {
-                    json!({ "at_least": at_least, "theta": threshold })
-                }
-                Role::Aim { epsilon } => json!({ "epsilon": epsilon }),
-            };
-            let beside = beside.iter().map(|one| json::joined([kind(&one.kind), role(&one.role)]));
-            json!({ "rank": measure(of), "models": models, "beside": beside.collect::<Vec<_>>() })
-        }
-    }
-}
-
-fn measure(measure: &Measure) -> Value {
-    kind(&measure.kind)
-}
-
-fn kind(kind: &MeasureKind) -> Value {
-    match kind {
-        MeasureKind::Probability => json!({ "kind": "probability" }),
-        MeasureKind::Expectation { range, level: None, .. } => json!({ "kind": "mean", "range": range }),
-        MeasureKind::Expectation { range, level, .. } => {
-            json!({ "kind": "tail", "range": range, "level": level })
-        }
-        MeasureKind::Quantile { level, .. } => json!({ "kind": "quantile", "level": level }),
-        MeasureKind::Curve { times, falls, .. } => json!({ "kind": "curve", "times": times, "falls": falls }),
-    }
-}
-
-/// The columns that a result has read: option, measure, where they are, and of how many trials.
-fn columns(ask: &Ask, result: &QueryResult) -> Vec<(Option<String>, usize, Column, u64)> {
-    let trials = result.consumed.counts.trials;
+/// The columns that a query reads, with the option or the side that each is of.
+pub fn columns(ask: &Ask) -> Vec<(Option<String>, Column)> {
     match ask {
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
-            vec![(None, 0, (measure.target.world, None, measure.target.column), trials)]
+            vec![(None, (measure.target.world, None, measure.target.column))]
         }
         Ask::Compare { first, second, .. } => {
-            let pairs = result.compare.as_ref().map_or(0, |found| found.difference.counts.trials);
             let side = |(name, of): (&str, &Measure)| {
-                (Some(name.to_owned()), 0, (of.target.world, None, of.target.column), pairs)
+                (Some(name.to_owned()), (of.target.world, None, of.target.column))
             };
             [("first", first), ("second", second)].map(side).into()
         }
         Ask::Rank { options, .. } => {
-            let ranked = result.rank.iter().flat_map(|rank| &rank.options);
-            let count = |label: &str| {
-                let found = ranked.clone().find(|option| option.label == label);
-                found.map_or(trials, |option| option.counts.trials)
+            let of = |option: &RankOption| {
+                let own = std::iter::once(option.target.column).chain(option.beside.iter().copied());
+                let place = |column| (option.target.world, option.advice, column);
+                own.map(|column| (Some(option.label.clone()), place(column))).collect::<Vec<_>>()
             };
-            let all = options.iter().flat_map(|option| {
-                let columns = std::iter::once(option.target.column).chain(option.beside.iter().copied());
-                columns.enumerate().map(move |(measure, column)| {
-                    let place = (option.target.world, option.advice, column);
-                    (Some(option.label.clone()), measure, place, option.label.as_str())
-                })
-            });
-            all.map(|(option, measure, place, label)| (option, measure, place, count(label))).collect()
+            options.iter().flat_map(of).collect()
         }
+    }
+}
+
+/// How many trials of a column a result has read.
+fn count(result: &QueryResult, queries: usize, option: Option<&str>) -> u64 {
+    let trials = result.consumed.counts.trials;
+    match (&result.compare, &result.rank) {
+        (Some(found), _) => found.difference.counts.trials,
+        (_, Some(found)) => {
+            let of = found.options.iter().find(|known| Some(known.label.as_str()) == option);
+            of.map_or(trials, |of| of.counts.trials)
+        }
+        // Each value of a parameter has trials of its own.
+        _ if queries > 1 => u64::MAX,
+        _ => trials,
     }
 }
 
@@ -181,4 +258,60 @@ fn truths(truths: &[bool]) -> Value {
     }
     let (runs, bits) = (json!({ "runs": runs }), json!({ "bits": BASE64_STANDARD.encode(bytes) }));
     if runs.to_string().len() <= bits.to_string().len() { runs } else { bits }
+}
+
+/// The readings of a line.
+fn unpacked(line: Value) -> Result<Vec<Reading>, Unreadable> {
+    #[derive(Deserialize)]
+    struct Line {
+        count: u64,
+        unresolved: Vec<usize>,
+        values: Option<Vec<Value>>,
+        runs: Option<Vec<u64>>,
+        bits: Option<String>,
+    }
+    let Line { count, unresolved, values, runs, bits } = known(line)?;
+    if count > MOST {
+        return Err(unreadable(format!("{count} outcomes are more than are read")));
+    }
+    let count = count as usize;
+    let mut readings: Vec<Reading> = match (values, runs, bits) {
+        (Some(values), None, None) => {
+            let value = |value: &Value| match value {
+                Value::Null => Some(Reading::Unresolved),
+                Value::String(text) => text.parse().ok().map(Reading::Value),
+                value => value.as_f64().map(Reading::Value),
+            };
+            values
+                .iter()
+                .map(value)
+                .collect::<Option<_>>()
+                .ok_or_else(|| unreadable("a value is no number"))?
+        }
+        (None, Some(runs), None) => {
+            let sum = runs.iter().try_fold(0_u64, |sum, run| sum.checked_add(*run));
+            if sum != Some(count as u64) {
+                return Err(unreadable(format!("its runs are not of {count} trials")));
+            }
+            let one =
+                |(k, run): (usize, &u64)| std::iter::repeat_n(Reading::Truth(k % 2 == 1), *run as usize);
+            runs.iter().enumerate().flat_map(one).collect()
+        }
+        (None, None, Some(bits)) => {
+            let bytes = BASE64_STANDARD.decode(bits).map_err(|_| unreadable("its bits are not base64"))?;
+            if bytes.len() != count.div_ceil(8) {
+                return Err(unreadable(format!("its bits are not of {count} trials")));
+            }
+            let truth = |k: usize| Reading::Truth(bytes[k / 8] >> (k % 8) & 1 == 1);
+            (0..count).map(truth).collect()
+        }
+        _ => return Err(unreadable("a line has no outcomes")),
+    };
+    if readings.len() != count || unresolved.iter().any(|place| *place >= count) {
+        return Err(unreadable(format!("a line has not the outcomes of {count} trials")));
+    }
+    for place in unresolved {
+        readings[place] = Reading::Unresolved;
+    }
+    Ok(readings)
 }

@@ -71,8 +71,8 @@ pub use invalid::Invalid;
 pub use mean::Mean;
 pub use procedures::{
     AnyEstimator, AnyTest, Calibrated, Evidence, FixedSize, Gbas, Massart, Okamoto, PROCEDURES, Plan,
-    Spending, Sprt, ThreeWay, TwoSprt, calibrated, clopper_pearson, eprocess, gbas, massart, okamoto, plan,
-    spending, sprt, two_sprt,
+    Spending, Sprt, ThreeWay, TwoSprt, UNNAMED, calibrated, clopper_pearson, eprocess, gbas, massart,
+    okamoto, plan, spending, sprt, two_sprt,
 };
 pub use quality::Quality;
 pub use running::Running;

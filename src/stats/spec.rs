@@ -2,11 +2,13 @@
 //! likely to take, and how it is made. The compiler, reports, forecasts and `smc explain` read [`super::PROCEDURES`].
 
 use super::ranking::Ranking;
-use super::{AnyEstimator, AnyTest, Bounded, Hypothesis, Interval, Invalid, PROCEDURES, Sequential};
+use super::{AnyEstimator, AnyTest, Bounded, Hypothesis, Interval, Invalid, PROCEDURES, Sequential, UNNAMED};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A kind of query that can name procedures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Serves {
     /// `check P(…)` and `check Q(…)`.
     Check,
@@ -254,7 +256,8 @@ impl Spec {
 }
 
 /// A procedure with the values of its arguments.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "Written", try_from = "Written")]
 pub struct Chosen {
     /// The procedure.
     pub spec: &'static Spec,
@@ -287,5 +290,33 @@ impl Chosen {
             Kind::Relative => Some(value * interval.middle()),
             _ => None,
         })
+    }
+}
+
+/// The same in a file.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    serves: Serves,
+    name: String,
+    values: Vec<f64>,
+}
+
+impl From<Chosen> for Written {
+    fn from(Chosen { spec, values }: Chosen) -> Self {
+        Self { serves: spec.serves, name: spec.name.to_owned(), values }
+    }
+}
+
+impl TryFrom<Written> for Chosen {
+    type Error = String;
+
+    fn try_from(Written { serves, name, values }: Written) -> Result<Self, String> {
+        let fits = |spec: &&&Spec| {
+            spec.name == name && spec.serves == serves && spec.arguments.len() == values.len()
+        };
+        let spec = PROCEDURES.iter().chain(UNNAMED).find(fits);
+        Ok(spec
+            .ok_or_else(|| format!("`{name}` is no procedure with {} arguments", values.len()))?
+            .with(values))
     }
 }

@@ -16,9 +16,10 @@ pub(crate) fn said(context: &Context<'_>, measure: &Measure, bound: Option<(Bina
         MeasureKind::Tail(_) => "CVaR",
     };
     let (levels, metric) = apart(inner);
+    let sign = |relation| if matches!(relation, BinaryOp::AtMost | BinaryOp::Greater) { "<=" } else { "<" };
     let event = bound.filter(|_| letter == "Q").map(|(relation, bound)| Event {
         metric: metric.to_owned(),
-        relation: if matches!(relation, BinaryOp::AtMost | BinaryOp::Greater) { "<=" } else { "<" },
+        relation: sign(relation).to_owned(),
         bound: context.text(bound.span),
     });
     let measure = match &measure.kind {

@@ -115,7 +115,7 @@ pub(in crate::engine) fn quantile(said: &Said, level: f64, statement: &Statement
     let event = said.event.as_ref()?;
     // The q-quantile is at most x exactly if P(m <= x) >= q. It is below x if P(m < x) > q, and not if P(m < x) < q; at
     // equality it may be either, so one of the two claims is true there as well.
-    let (relation, beyond) = match (statement.claim, event.relation) {
+    let (relation, beyond) = match (statement.claim, event.relation.as_str()) {
         (Claim::AtLeast(theta), "<=") if theta == level => ("<=", ">="),
         (Claim::Below(theta), "<=") if theta == level => (">", "<"),
         (Claim::Above(theta), "<") if theta == level => ("<", ">"),
@@ -238,9 +238,13 @@ mod tests {
 
     #[test]
     fn checks_of_quantiles_certify_quantiles() {
-        let of = |relation| Said {
+        let of = |relation: &str| Said {
             measure: "Q(0.9, f(a))".to_owned(),
-            event: Some(Event { metric: "f(a)".to_owned(), relation, bound: "3 m".to_owned() }),
+            event: Some(Event {
+                metric: "f(a)".to_owned(),
+                relation: relation.to_owned(),
+                bound: "3 m".to_owned(),
+            }),
         };
         let said = |relation, claim| quantile(&of(relation), 0.9, &Statement { claim, error: 0.01 });
         let below = Claim::Below(0.9);

@@ -1,9 +1,12 @@
-//! Parts that stay in memory: the outcomes of a call, for its certificate.
+//! Parts that stay in memory: the outcomes of a call, for its certificate; and those of a certificate.
 
-use super::part::{Body, Part};
-use super::unit::Unit;
+use super::Origin;
+use super::part::{Body, Head, Part};
+use super::table::Table;
+use super::unit::{Trials, Unit};
 use crate::engine::sampling::splitting::{RunRecord, SplitRun};
-use crate::trials::cell::Reading;
+use crate::trials::cell::{Cell, Reading};
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 /// The parts of a call as they come.
@@ -61,5 +64,38 @@ impl Kept {
             _ => None,
         });
         runs.collect()
+    }
+}
+
+impl Part {
+    /// Readings and runs that somebody gives, as a part of no study. Columns of one world and option are of the same trials.
+    pub fn given(readings: &[(Column, Vec<Reading>)], runs: &[(SplitRun, RunRecord)]) -> Self {
+        let mut tables: BTreeMap<_, Vec<(usize, &[Reading])>> = BTreeMap::new();
+        for ((world, advice, column), readings) in readings {
+            let table = tables.entry((*world, *advice)).or_default();
+            if table.iter().all(|(known, _)| known != column) {
+                table.push((*column, readings));
+            }
+        }
+        let cell = |reading| Cell { reading, steps: 0, triggered: u64::MAX, shrunk: false, no_way: false };
+        let (mut units, mut bodies) = (Vec::new(), Vec::new());
+        for ((world, advice), columns) in tables {
+            let count = columns.iter().map(|(_, readings)| readings.len()).min().unwrap_or(0);
+            let row = |k: usize| columns.iter().map(move |(_, readings)| cell(readings[k]));
+            let cells: Vec<Cell> = (0..count).flat_map(row).collect();
+            let mut table = Table::new(columns.len());
+            table.push(&cells);
+            let columns: Vec<usize> = columns.iter().map(|(column, _)| *column).collect();
+            // What was just made fits together.
+            let _ = table.settle(count as u64, columns.len());
+            units.push(Unit::Trials(Trials { world, columns, advice, from: 0, to: count as u64 }));
+            bodies.push(Body::Trials(table));
+        }
+        for (run, record) in runs {
+            units.push(Unit::Run(run.clone()));
+            bodies.push(Body::Run(Some(record.clone())));
+        }
+        let origin = Origin { version: String::new(), print: String::new(), seed: 0 };
+        Self { head: Head { origin, seconds: 0.0, units }, bodies }
     }
 }

@@ -23,7 +23,7 @@ use crate::engine::trials::executor::{Executor, Job, Threads};
 use crate::engine::trials::prepared::PreparedWorld;
 use crate::kernel::driver::MakeDrivers;
 use crate::trials::budget::Budget;
-use crate::trials::cell::Item;
+use crate::trials::cell::{Item, Reading};
 pub use kept::{Column, Kept};
 pub use part::{Body, Damaged, Head, Part};
 pub use plan::{Attempts, Plan};
@@ -140,4 +140,28 @@ fn outcomes(
         from = to;
     }
     Ok(Some(Body::Trials(table)))
+}
+
+/// What a column comes to in some trials, which are run again.
+///
+/// # Errors
+/// If the study has no such column, or a trial cannot be run.
+pub fn again(
+    (study, drivers): (&Study, &MakeDrivers),
+    (world, advice, column): Column,
+    (seed, trials): (u64, &[u64]),
+    threads: &Threads,
+) -> Result<Vec<Reading>, Fault> {
+    if trials.is_empty() {
+        return Ok(Vec::new());
+    }
+    let prepared = PreparedWorld::of(study, world, seed, drivers).ok_or(Fault::Unsuitable)?;
+    let is_unknown = advice.is_some_and(|advice| prepared.program.scenario.singles(advice).is_none());
+    if is_unknown || column >= prepared.columns.len() {
+        return Err(Fault::Unsuitable);
+    }
+    let job = Job::new(&prepared, vec![column], seed);
+    let items: Vec<Item> = trials.iter().map(|index| Item { advice, index: *index }).collect();
+    let cells = threads.run(&job, &items, &Budget::new(u64::MAX, None))?;
+    Ok(cells.column(0).map(|cell| cell.reading).collect())
 }

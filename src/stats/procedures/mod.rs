@@ -96,6 +96,9 @@ pub const PROCEDURES: &[&Spec] = &[
     &RANKING_OKAMOTO,
 ];
 
+/// Those that are taken where a query names none.
+pub const UNNAMED: &[&Spec] = &[&PROBABILITY_WITHIN, &MEAN_RUNNING, &MEAN_WITHIN, &TAIL_WITHIN];
+
 /// The procedure as queries name it.
 pub const SPRT: Spec = Spec {
     name: "sprt",
