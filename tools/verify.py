@@ -261,7 +261,21 @@ def spending(rule):
     return stops, lambda s, f: clopper_pearson(s, f, level)
 
 
-ESTIMATES = {"okamoto": okamoto, "clopper_pearson": fixed, "calibrated": calibrated, "spending": spending}
+def massart(rule):
+    """Jegourel, Sun and Dong 2017: the bound of Massart, at the end of a running interval that is nearest to one half."""
+    epsilon, share = rule["epsilon"], rule["auxiliary"]
+    limit = math.ceil(math.log(2 / rule["delta"]) / (2 * epsilon**2))
+
+    def stops(s, f):
+        low, high = clopper_pearson(s, f, share)
+        p = high if high < 0.5 else 1 - low if low > 0.5 else None
+        spread = (1.5 + epsilon) ** 2 if p is None else (3 * p + epsilon) * (3 * (1 - p) - epsilon)
+        return s + f >= min(limit, 2 / (9 * epsilon**2) * math.log(2 / (rule["delta"] - share)) * spread)
+
+    return stops, lambda s, f: (max(s / (s + f) - epsilon, 0), min(s / (s + f) + epsilon, 1))
+
+
+ESTIMATES = {"okamoto": okamoto, "clopper_pearson": fixed, "calibrated": calibrated, "spending": spending, "massart": massart}
 
 
 # Results.
@@ -400,6 +414,37 @@ def bounded(result, claim, low, high, error):
         raise Refused(f"the claim is {claim}")
 
 
+def under_every(result, queries, claim, lines):
+    """A check under every value of a parameter: each is a check of its own, and all errors add up."""
+    verdicts, error = [], 0.0
+    for query, line, part in zip(queries, lines, result["every"]["values"], strict=True):
+        _, _, ask = asked(query)
+        rule = result["method"]
+        found = {until(TESTS[rule["name"]](rule, ask), case) for case in cases(line)}
+        if part["trials"] != max(s + f for s, f, _ in found):
+            raise Refused(f"the rule stops after {max(s + f for s, f, _ in found)} trials, not {part['trials']}")
+        decisions = {one[2] for one in found}
+        decision = decisions.pop() if len(decisions) == 1 else None
+        verdicts.append("undecided" if decision in (None, "within") else "satisfied" if (decision == "above") == ask["at_least"] else "violated")
+        error += max(rule["alpha"], rule.get("beta", 0.0))
+    verdict = "violated" if "violated" in verdicts else "satisfied" if set(verdicts) == {"satisfied"} else "undecided"
+    if result["verdict"] != verdict or [part["verdict"] for part in result["every"]["values"]] != verdicts:
+        raise Refused(f"the outcomes say {verdict}: {', '.join(verdicts)}")
+    if verdict == "satisfied" and claim["error"] < error - 1e-12:
+        raise Refused(f"the error is {error}, not {claim['error']}")
+
+
+def curve(result, ask, claim, outcomes):
+    """A band around a distribution function (Dvoretzky, Kiefer and Wolfowitz; Massart 1990), here at its last bound."""
+    values, rule, last = outcomes["values"], result["method"], ask["estimate"]["times"][-1]
+    n, radius = len(values), math.sqrt(math.log(2 / rule["delta"]) / (2 * len(values)))
+    if n != rule["trials"]:
+        raise Refused(f"{n} trials of {rule['trials']}")
+    low = sum(v is not None and v <= last for v in values) / n
+    high = low + values.count(None) / n
+    bounded(result, claim, max(low - radius, 0.0), min(high + radius, 1.0), rule["delta"])
+
+
 def check_mean(result, ask, claim, outcomes):
     """The sequence holds at all times, so the test stops once it lies on one side of the threshold."""
     rule, theta, span = result["method"], ask["theta"], ask["check"]["range"]
@@ -479,6 +524,18 @@ def compare(result, ask, claim, first, second):
     bounded(result, claim, *found, error)
 
 
+def rank_fixed(result, ask, claim, lines):
+    """Hoeffding's interval of half of the gap around each option, all at once: the one with the largest share is chosen."""
+    rule, told = result["method"], claim["claim"]["Best"]
+    size = math.ceil(2 * math.log(2 * len(lines) / rule["delta"]) / rule["epsilon"] ** 2)
+    shares = {line["option"]: [sum(case) / max(len(case), 1) for case in cases(line)] for line in lines}
+    if any(line["count"] < size for line in lines):
+        raise Refused(f"an option has fewer than {size} trials")
+    lost = max(case[-1] for case in shares.values()) - shares[told["choice"]][0]
+    if told["gap"] < rule["epsilon"] + lost - 1e-9 or claim["error"] < rule["delta"] - 1e-12:
+        raise Refused(f"`{told['choice']}` is {lost} from the largest share")
+
+
 def rank(result, ask, claim, lines):
     """The choice is within the gap of every option: paired bets on each rival, which is taken to hold where it has no trial. Options
     that left the race were worse than another one, on the trials that both had."""
@@ -554,9 +611,12 @@ def asked(query):
 def verified(entry, lines):
     """Checks a result; whether its rule is one of those that are checked here."""
     result, claim, queries = entry["result"], entry["claim"], entry["queries"]
-    if len(queries) != 1:
-        return False
     (word, kind, ask), name = asked(queries[0]), result["method"]["name"]
+    if len(queries) != 1:
+        known = word == "check" and kind == "probability" and name in TESTS
+        if known:
+            under_every(result, queries, claim, lines)
+        return known
     counts = [line["count"] for line in lines]
     if sum(counts) != result["trials"] and word != "rank":
         raise Refused(f"{sum(counts)} outcomes for {result['trials']} trials")
@@ -568,6 +628,10 @@ def verified(entry, lines):
         estimate(result, ask, claim, lines[0])
     elif word == "estimate" and kind == "mean":
         expectation(result, ask, claim, lines[0])
+    elif word == "estimate" and kind == "curve" and not ask["estimate"]["falls"]:
+        curve(result, ask, claim, lines[0])
+    elif word == "rank" and name == "okamoto" and kind == "probability" and not ask["beside"]:
+        rank_fixed(result, ask, claim, lines)
     elif word == "estimate" and kind == "quantile":
         quantile(result, ask, claim, lines[0])
     elif word == "rank" and name in ("betting", "one_challenger") and kind in ("probability", "mean") and not ask["beside"] and ask["models"] == 1:

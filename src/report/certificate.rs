@@ -101,10 +101,10 @@ pub fn text(study: &Study, call: &Call<'_>, budget: &Budget, run: &CallResult, k
     for result in &run.results {
         let queries = queries(study, result);
         lines.push(json!({ "result": fields(result), "claim": result.certificate, "queries": queries }));
-        for query in &queries {
+        for (place, query) in queries.iter().enumerate() {
             for (option, column) in columns(&query.ask) {
                 let head = json!({ "option": option, "column": column });
-                let count = count(result, queries.len(), option.as_deref());
+                let count = count(result, place, option.as_deref());
                 lines.push(json::joined([head, packed(&kept.readings(column, count))]));
             }
             if let Ask::Estimate { measure, level: Some(_), .. } = &query.ask {
@@ -206,17 +206,17 @@ pub fn columns(ask: &Ask) -> Vec<(Option<String>, Column)> {
     }
 }
 
-/// How many trials of a column a result has read.
-fn count(result: &QueryResult, queries: usize, option: Option<&str>) -> u64 {
+/// How many trials of a column a result has read, where the query is the one of this place.
+fn count(result: &QueryResult, place: usize, option: Option<&str>) -> u64 {
     let trials = result.consumed.counts.trials;
-    match (&result.compare, &result.rank) {
-        (Some(found), _) => found.difference.counts.trials,
-        (_, Some(found)) => {
+    match (&result.compare, &result.rank, &result.every) {
+        (Some(found), ..) => found.difference.counts.trials,
+        (_, Some(found), _) => {
             let of = found.options.iter().find(|known| Some(known.label.as_str()) == option);
             of.map_or(trials, |of| of.counts.trials)
         }
         // Each value of a parameter has trials of its own.
-        _ if queries > 1 => u64::MAX,
+        (.., Some(every)) => every.parts.get(place).map_or(0, |part| part.counts.trials),
         _ => trials,
     }
 }

@@ -8,6 +8,7 @@ mod arrival;
 mod bayes;
 mod drift;
 mod estimators;
+mod exhaustive;
 mod metrics;
 mod ranking;
 mod splitting;
