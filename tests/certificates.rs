@@ -253,3 +253,30 @@ fn what_does_not_follow_from_the_outcomes_is_refused() {
     }
     assert!(tried > 35, "{tried}");
 }
+
+/// Few trials of every shipped model: stops by budget are part of a certificate, too.
+#[test]
+fn results_of_shipped_models_follow_from_their_outcomes() {
+    let place = Place::new(&[]);
+    let (file, folder) =
+        (place.path("out.smcc"), std::env::var("SMC_DATA").unwrap_or("../shared/data".into()));
+    let data = Path::new(&folder).join("eth-biwi");
+    let mut tried = 0;
+    for properties in std::fs::read_dir("properties").unwrap().map(|entry| entry.unwrap().path()) {
+        let model = Path::new("models").join(properties.with_extension("scn").file_name().unwrap());
+        if !model.exists() || model.to_string_lossy().contains("hotel") && !data.is_dir() {
+            eprintln!("SKIPPED: {} needs a model or data that is not here", properties.display());
+            continue;
+        }
+        let mut command = Command::new(env!("CARGO_BIN_EXE_smc"));
+        command.arg("check").args([&model, &properties]).args(["-q", "--max-trials", "8", "--certificate"]);
+        command.arg(&file).args(data.is_dir().then(|| format!("--data={}", data.display())));
+        let output = command.output().unwrap();
+        assert!(output.status.code().is_some_and(|code| code != 2), "{model:?}: {output:?}");
+        for (code, said) in verified(&file) {
+            assert!(matches!(code, 0 | 3) && !said.contains("refused"), "{model:?}: {said}");
+        }
+        tried += 1;
+    }
+    assert!(tried > 20, "{tried}");
+}

@@ -339,13 +339,7 @@ def estimate(result, ask, claim, outcomes):
     if result["trials"] != max(n for n, *_ in ends):
         raise Refused(f"the rule stops after {max(n for n, *_ in ends)} trials, not {result['trials']}")
     low, high = min(one[2][0] for one in ends), max(one[2][1] for one in ends)
-    near(low, result["low"], "the lower end")
-    near(high, result["high"], "the upper end")
-    told = (claim or {}).get("claim", {}).get("Between", {})
-    if told and (told["low"] > low + 1e-7 or told["high"] < high - 1e-7):
-        raise Refused(f"the claim is narrower than [{low}, {high}]")
-    if told and claim["error"] < rule["delta"] - 1e-12:
-        raise Refused(f"the error is {rule['delta']}, not {claim['error']}")
+    bounded(result, claim, low, high, rule["delta"])
 
 
 class Sequence:
@@ -410,8 +404,10 @@ def bounded(result, claim, low, high, error):
     near(low, result["low"] if result["low"] is not None else -INF, "the lower end")
     near(high, result["high"] if result["high"] is not None else INF, "the upper end")
     told = (claim or {}).get("claim", {}).get("Between")
-    if told and (max(told["low"] if told["low"] is not None else -INF, low) > low + 1e-7 * max(1, abs(low)) or claim["error"] < error - 1e-12):
-        raise Refused(f"the claim is {claim}")
+    if told:
+        least, most = (-INF if told["low"] is None else told["low"]), (INF if told["high"] is None else told["high"])
+        if least > low + 1e-7 * max(1, abs(low)) or most < high - 1e-7 * max(1, abs(high)) or claim["error"] < error - 1e-12:
+            raise Refused(f"the claim is {claim}, not [{low}, {high}] with error {error}")
 
 
 def under_every(result, queries, claim, lines):
@@ -487,7 +483,8 @@ def quantile(result, ask, claim, outcomes):
         lower = next((k for k in range(n) if ln_tails(k + 1, n - k, q)[1] > tail), n)
         upper = next((k for k in range(n) if ln_tails(k + 1, n - k, q)[0] <= tail), n) + 1
     value = lambda rank, below: -INF if rank <= below else known[rank - below - 1] if rank - below <= len(known) else INF
-    bounded(result, claim, value(lower, lost) if lower >= 1 else -INF, value(upper, 0) if upper <= n else INF, error)
+    least = 0.0 if outcomes.get("time") else -INF
+    bounded(result, claim, max(value(lower, lost) if lower >= 1 else -INF, least), value(upper, 0) if upper <= n else INF, error)
 
 
 def difference(low_pairs, error):
@@ -608,6 +605,23 @@ def asked(query):
     return word, kind, {**ask, word: measure, "theta": ask.get("threshold")}
 
 
+def counted(result, word, lines):
+    """That trials, successes and failures are those of the outcomes."""
+    if word == "rank":
+        return
+    if sum(line["count"] for line in lines) != result["trials"]:
+        raise Refused(f"{sum(line['count'] for line in lines)} outcomes for {result['trials']} trials")
+    if word == "compare":
+        return
+    lost = sum(len(line["unresolved"]) for line in lines)
+    held = [sum(t for k, t in enumerate(line["truths"]) if k not in line["unresolved"]) for line in lines]
+    found = (lost, sum(held), sum(len(line["truths"]) for line in lines) - sum(held) - lost if lines[0]["truths"] else 0)
+    if found != (result["unresolved"], result["successes"], result["failures"]):
+        raise Refused(f"of the outcomes {found[1]} hold, {found[2]} fail, {found[0]} are unresolved")
+    if sum(held) and not lost and result["method"]["name"] not in ("gbas", "splitting"):
+        near(result["estimate"], held[0] / lines[0]["count"], "the estimate", 1e-9)
+
+
 def verified(entry, lines):
     """Checks a result; whether its rule is one of those that are checked here."""
     result, claim, queries = entry["result"], entry["claim"], entry["queries"]
@@ -617,9 +631,12 @@ def verified(entry, lines):
         if known:
             under_every(result, queries, claim, lines)
         return known
-    counts = [line["count"] for line in lines]
-    if sum(counts) != result["trials"] and word != "rank":
-        raise Refused(f"{sum(counts)} outcomes for {result['trials']} trials")
+    if len(queries) == 1:
+        counted(result, word, lines)
+    chosen = next((ask[role]["values"] for role in ("test", "estimator", "ranking") if role in ask), [])
+    numbers = [x for x in result["method"].values() if not isinstance(x, str)]
+    if not all(any(abs(x - y) <= 1e-9 * max(abs(x), 1) for y in numbers) for x in chosen):
+        raise Refused(f"the rule has the numbers {numbers}, and {chosen} were asked for")
     if word == "check" and kind == "probability" and name in TESTS:
         check(result, ask, claim, lines[0])
     elif word == "check" and kind == "mean":

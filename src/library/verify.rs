@@ -12,23 +12,25 @@ use crate::compile::{Study, study::Query};
 use crate::engine::shards::{Column, Part, Stored, again};
 use crate::engine::{Budget, Call, CommandLine, Fault, Nobody, Threads, run};
 use crate::kernel::driver::{Drivers, MakeDrivers};
-use crate::report::certificate::{self, Entry};
+use crate::logic::{Root, Term, TermId};
+use crate::report::certificate::{self, Entry, Time};
 use crate::trials::cell::Reading;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Fields of a result that outcomes do not say: where it was asked, marks of trials, why it was not more, warnings, whether a time
-/// lies beyond the horizon, and how often such a model was right.
+/// Fields of a result that outcomes do not say: where it was asked, marks of trials, why it was not more, warnings, what a move
+/// means, and how often such a model was right.
 const UNSAID: [&str; 9] =
-    ["file", "line", "shrunk", "no_way", "stopped_by", "shortfall", "warnings", "censored", "model"];
+    ["file", "line", "shrunk", "no_way", "stopped_by", "shortfall", "warnings", "means", "model"];
 /// Numbers that another version rounds otherwise are the same.
 const SAME: f64 = 1e-9;
 /// More worlds and columns than a certificate has.
 const MANY: usize = 1 << 16;
 
 /// A world in which nothing happens.
-const NOTHING: &str = "horizon = 1 step\nprocess p { var x = 1 }";
-const QUERY: &str = "check P(p.x > 0) >= 0.5";
+const NOTHING: &str = "process p { var x = 1 }";
+/// A truth and a time.
+const QUERIES: &str = "check P(p.x > 0) >= 0.5\nestimate Q(0.5, time_until(p.x > 0))";
 
 /// Whether a result follows from its outcomes.
 ///
@@ -58,6 +60,18 @@ pub fn follows(head: &certificate::Head, entry: &Entry, threads: &Threads) -> Re
     let run = run(&study, &call, &stored, &budget, &Nobody);
     let run = run.map_err(|fault| refusals(&fault).first().map_or(String::new(), |one| one.title.clone()))?;
     let [result] = &run.results[..] else { return Err("it is not one result".to_owned()) };
+    let queries: Vec<&Query> = entry.queries.iter().collect();
+    let wanted = certificate::read_by(&queries, result);
+    let is_read = |(_, column, count): &(_, Column, u64), (of, readings): &(Column, Vec<Reading>)| {
+        column == of && [u64::MAX, readings.len() as u64].contains(count)
+    };
+    let is_whole = wanted.len() == entry.outcomes.len();
+    if !is_whole || !wanted.iter().zip(&entry.outcomes).all(|(one, line)| is_read(one, line)) {
+        let counts = |all: Vec<u64>| all.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
+        let has = counts(entry.outcomes.iter().map(|(_, readings)| readings.len() as u64).collect());
+        let reads = counts(wanted.iter().map(|(.., count)| *count).collect());
+        return Err(format!("it has {has} outcomes, and the rule reads {reads}"));
+    }
     differ("", &entry.result, &certificate::fields(result), &UNSAID)?;
     differ("the claim", &entry.claim, &serde_json::json!(result.certificate), &[])
 }
@@ -67,7 +81,12 @@ pub fn is_asked(study: &Study, entry: &Entry) -> bool {
     let is_same = |one: &Query, other: &Query| {
         one.ask == other.ask && one.text == other.text && one.settings == other.settings
     };
+    let are_times = |(column, _): &(Column, Vec<Reading>)| {
+        let told = entry.times.iter().find(|(known, _)| known == column).map(|(_, time)| *time);
+        certificate::time(study, *column) == told
+    };
     entry.queries.iter().all(|query| study.queries.iter().any(|one| is_same(one, query)))
+        && entry.outcomes.iter().all(are_times)
 }
 
 /// An outcome that is another one when its trial is run again.
@@ -157,11 +176,15 @@ fn near(a: f64, b: f64) -> bool {
 
 /// The queries of a result over worlds in which nothing happens.
 fn study(entry: &Entry) -> Result<Study, String> {
-    let made = Draft::new("nothing.scn", NOTHING).compiled(&[("nothing.bltl", QUERY)]);
+    let horizon = entry.queries.iter().find_map(|query| query.horizon.as_deref()).unwrap_or("1 step");
+    // One step long, whatever its length.
+    let step = if horizon.contains("step") { String::new() } else { format!("step = {horizon}\n") };
+    let made = Draft::new("nothing.scn", format!("horizon = {horizon}\n{step}{NOTHING}"))
+        .compiled(&[("nothing.bltl", QUERIES)]);
     let (mut study, _) = made.map_err(|found: Diagnostics| found.to_string())?;
     let targets = entry.queries.iter().flat_map(|query| certificate::columns(&query.ask));
-    let runs =
-        entry.runs.iter().flat_map(|(run, _)| run.columns.map(|column| (None, (run.world, None, column))));
+    let split = entry.queries.iter().filter_map(|query| certificate::split(&query.ask));
+    let runs = split.flat_map(|(world, both)| both.map(|column| (None, (world, None, column))));
     let (mut worlds, mut columns) = (0, 0);
     for (_, (world, _, column)) in targets.chain(runs) {
         (worlds, columns) = (worlds.max(world), columns.max(column));
@@ -170,8 +193,17 @@ fn study(entry: &Entry) -> Result<Study, String> {
         return Err(format!("it names a world or a column beyond {MANY}"));
     }
     let mut world = study.worlds.swap_remove(0);
-    world.columns = vec![world.columns[0].clone(); columns + 1];
+    let [truth, time] = &world.columns[..] else { return Err("it has no two columns".to_owned()) };
+    let (until, mut length) = (time.clone(), time.clone());
+    length.root = Root::Metric(TermId(world.tree.terms.len() as u32));
+    world.tree.terms.push(Term::Constant(0.0));
+    world.columns = vec![truth.clone(); columns + 1];
     study.worlds = vec![world; worlds + 1];
+    for ((world, _, column), time) in &entry.times {
+        if let Some(one) = study.worlds.get_mut(*world).and_then(|world| world.columns.get_mut(*column)) {
+            *one = if *time == Time::Until { until.clone() } else { length.clone() };
+        }
+    }
     study.queries.clone_from(&entry.queries);
     study.title = String::new();
     Ok(study)

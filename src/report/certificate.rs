@@ -13,7 +13,9 @@ use crate::compile::study::{Ask, Measure, Query, RankOption};
 use crate::engine::outcome::{CallResult, QueryResult};
 use crate::engine::shards::{Column, Kept, RunRecord, SplitRun};
 use crate::engine::{Budget, Call};
+use crate::logic::Root;
 use crate::trials::cell::Reading;
+use crate::trials::setup::is_never_early;
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -67,8 +69,20 @@ pub struct Entry {
     pub queries: Vec<Query>,
     /// The outcomes of each column.
     pub outcomes: Vec<(Column, Vec<Reading>)>,
+    /// The columns that are times.
+    pub times: Vec<(Column, Time)>,
     /// The runs of splitting.
     pub runs: Vec<(SplitRun, RunRecord)>,
+}
+
+/// A number that is never below 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Time {
+    /// A time until something, which may lie beyond the horizon.
+    Until,
+    /// The time of a leg, a magnitude.
+    Length,
 }
 
 /// Why a text is no certificate.
@@ -101,15 +115,15 @@ pub fn text(study: &Study, call: &Call<'_>, budget: &Budget, run: &CallResult, k
     for result in &run.results {
         let queries = queries(study, result);
         lines.push(json!({ "result": fields(result), "claim": result.certificate, "queries": queries }));
-        for (place, query) in queries.iter().enumerate() {
-            for (option, column) in columns(&query.ask) {
-                let head = json!({ "option": option, "column": column });
-                let count = count(result, place, option.as_deref());
-                lines.push(json::joined([head, packed(&kept.readings(column, count))]));
+        for (option, column, count) in read_by(&queries, result) {
+            let mut head = json!({ "option": option, "column": column });
+            if let Some(time) = time(study, column) {
+                head["time"] = json!(time);
             }
-            if let Ask::Estimate { measure, level: Some(_), .. } = &query.ask {
-                lines.push(json!({ "runs_of_splitting": kept.runs(measure.target.world) }));
-            }
+            lines.push(json::joined([head, packed(&kept.readings(column, count))]));
+        }
+        if let Some((world, _)) = queries.iter().find_map(|query| split(&query.ask)) {
+            lines.push(json!({ "runs_of_splitting": kept.runs(world) }));
         }
     }
     let mut text = String::new();
@@ -150,14 +164,20 @@ pub fn read(text: &str) -> Result<(Head, Vec<Entry>), Unreadable> {
         let mut line = line?;
         if line.get("result").is_some() {
             let [result, claim, queries] = ["result", "claim", "queries"].map(|name| line[name].take());
-            let (outcomes, runs) = (Vec::new(), Vec::new());
-            entries.push(Entry { result, claim, queries: known(queries)?, outcomes, runs });
+            let (outcomes, times, runs) = (Vec::new(), Vec::new(), Vec::new());
+            entries.push(Entry { result, claim, queries: known(queries)?, outcomes, times, runs });
             continue;
         }
         let entry = entries.last_mut().ok_or_else(|| unreadable("outcomes stand before the first result"))?;
         match line.get_mut("runs_of_splitting") {
             Some(runs) => entry.runs.extend(known::<Vec<_>>(runs.take())?),
-            None => entry.outcomes.push((known(line["column"].take())?, unpacked(line)?)),
+            None => {
+                let column = known(line["column"].take())?;
+                if let Some(time) = line.get_mut("time") {
+                    entry.times.push((column, known(time.take())?));
+                }
+                entry.outcomes.push((column, unpacked(line)?));
+            }
         }
     }
     Ok((known(first)?, entries))
@@ -165,6 +185,17 @@ pub fn read(text: &str) -> Result<(Head, Vec<Entry>), Unreadable> {
 
 fn known<T: serde::de::DeserializeOwned>(value: Value) -> Result<T, Unreadable> {
     serde_json::from_value(value).map_err(|error| unreadable(format!("a line does not fit: {error}")))
+}
+
+/// What is known of a column without its outcomes: that it is a time until something, or else another number that is never below 0.
+pub fn time(study: &Study, (world, _, column): Column) -> Option<Time> {
+    let world = study.worlds.get(world)?;
+    match world.columns.get(column)?.root {
+        Root::Metric(term) if !is_never_early((&world.tree, &world.signals), term) => None,
+        Root::Metric(term) if world.tree.is_time_until(term) => Some(Time::Until),
+        Root::Metric(_) => Some(Time::Length),
+        Root::Formula(_) | Root::Robustness(..) => None,
+    }
 }
 
 /// The fields of a result that a certificate has.
@@ -183,7 +214,40 @@ pub fn queries<'s>(study: &'s Study, result: &QueryResult) -> Vec<&'s Query> {
     if own.is_empty() { others } else { own }
 }
 
-/// The columns that a query reads, with the option or the side that each is of.
+/// The columns whose trials a result has read, how many of each (all there are: `u64::MAX`), and the option or the side that each
+/// is of.
+pub fn read_by(queries: &[&Query], result: &QueryResult) -> Vec<(Option<String>, Column, u64)> {
+    let mut all = Vec::new();
+    for (place, query) in queries.iter().enumerate() {
+        let columns = columns(&query.ask);
+        let width = match &query.ask {
+            Ask::Rank { options, .. } => columns.len() / options.len().max(1),
+            _ => 1,
+        };
+        for (k, (option, column)) in columns.into_iter().enumerate() {
+            let count = match &query.ask {
+                // Splitting has some trials besides its runs.
+                Ask::Estimate { level: Some(_), .. } => u64::MAX,
+                Ask::Rank { models, .. } => count(result, k / width % models, option.as_deref()),
+                _ => count(result, place, None),
+            };
+            all.push((option, column, count));
+        }
+    }
+    all
+}
+
+/// The world and the columns of a question for splitting.
+pub fn split(ask: &Ask) -> Option<(usize, [usize; 2])> {
+    match ask {
+        Ask::Estimate { measure, level: Some(level), .. } => {
+            Some((measure.target.world, [measure.target.column, *level]))
+        }
+        _ => None,
+    }
+}
+
+/// The columns of the trials that a query reads, with the option or the side that each is of.
 pub fn columns(ask: &Ask) -> Vec<(Option<String>, Column)> {
     match ask {
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
@@ -206,14 +270,14 @@ pub fn columns(ask: &Ask) -> Vec<(Option<String>, Column)> {
     }
 }
 
-/// How many trials of a column a result has read, where the query is the one of this place.
+/// How many trials of a column a result has read, where the value of a parameter is the one of this place.
 fn count(result: &QueryResult, place: usize, option: Option<&str>) -> u64 {
     let trials = result.consumed.counts.trials;
     match (&result.compare, &result.rank, &result.every) {
         (Some(found), ..) => found.difference.counts.trials,
         (_, Some(found), _) => {
             let of = found.options.iter().find(|known| Some(known.label.as_str()) == option);
-            of.map_or(trials, |of| of.counts.trials)
+            of.map_or(trials, |of| of.under.get(place).map_or(of.counts, |side| side.counts).trials)
         }
         // Each value of a parameter has trials of its own.
         (.., Some(every)) => every.parts.get(place).map_or(0, |part| part.counts.trials),

@@ -37,19 +37,7 @@ impl Setup {
 
     /// Whether a number is made of times that count from 0, so that it is never below 0.
     pub fn is_never_early(&self, term: TermId) -> bool {
-        let of = |term: &TermId| self.is_never_early(*term);
-        match &self.tree.terms[term.0 as usize] {
-            Term::TimeUntil(_) | Term::Abs(_) => true,
-            Term::Constant(value) => *value >= 0.0,
-            Term::Signal(signal) => match &self.signals[signal.0 as usize] {
-                Num::Time => true,
-                Num::Of(field, _) => field.dimension() == Some(Dimension::TIME),
-                Num::OfTwo(pair, ..) => pair.dimension() == Some(Dimension::TIME),
-                _ => false,
-            },
-            Term::Combine(operation, a, b) => *operation != Operation::Subtract && of(a) && of(b),
-            Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => of(a),
-        }
+        is_never_early((&self.tree, &self.signals), term)
     }
 
     /// The robustness of a column that is one.
@@ -180,5 +168,22 @@ impl Setup {
             }
         }
         Ok(needs)
+    }
+}
+
+/// Whether a number over some signals is made of times that count from 0.
+pub fn is_never_early((tree, signals): (&Tree, &[Num]), term: TermId) -> bool {
+    let of = |term: &TermId| is_never_early((tree, signals), *term);
+    match &tree.terms[term.0 as usize] {
+        Term::TimeUntil(_) | Term::Abs(_) => true,
+        Term::Constant(value) => *value >= 0.0,
+        Term::Signal(signal) => match &signals[signal.0 as usize] {
+            Num::Time => true,
+            Num::Of(field, _) => field.dimension() == Some(Dimension::TIME),
+            Num::OfTwo(pair, ..) => pair.dimension() == Some(Dimension::TIME),
+            _ => false,
+        },
+        Term::Combine(operation, a, b) => *operation != Operation::Subtract && of(a) && of(b),
+        Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => of(a),
     }
 }

@@ -197,10 +197,13 @@ fn the_confidence_sequence_ever_misses_with_its_error() {
     assert!(largest * 20 > all, "{largest} of {all}");
 }
 
+/// The gap of each choice that was claimed.
+type Claims = Vec<(usize, f64)>;
+
 /// Which gaps of which choices a race claims over a table of outcomes, at any of its rounds.
-fn claims(arms: usize, each: u32, bits: u32, allocation: Allocation) -> Vec<(usize, f64)> {
+fn claims(arms: usize, each: u32, bits: u32, allocation: Allocation) -> Claims {
     let mut race = Race::<Booleans>::new(arms, 0.25, 0.3, 1, allocation).unwrap();
-    let mut claims: Vec<(usize, f64)> = Vec::new();
+    let mut claims = Claims::new();
     while !race.finished() {
         let round = race.next_round().to_vec();
         if round.is_empty() || round.iter().any(|share| share.to > u64::from(each)) {
@@ -224,7 +227,7 @@ fn claims(arms: usize, each: u32, bits: u32, allocation: Allocation) -> Vec<(usi
 /// The largest probability that a race ever claims a gap that is too small, over a grid of probabilities; as a share of its error.
 fn races(arms: usize, each: u32, allocation: Allocation) -> f64 {
     // Tables with the same successes of each option and the same claims are one.
-    let mut tables: BTreeMap<(Vec<u32>, String), (u128, Vec<(usize, f64)>)> = BTreeMap::new();
+    let mut tables: BTreeMap<(Vec<u32>, String), (u128, Claims)> = BTreeMap::new();
     for bits in 0..1_u32 << (arms as u32 * each) {
         let claims = claims(arms, each, bits, allocation);
         let successes = |arm| (bits >> (arm as u32 * each) & ((1 << each) - 1)).count_ones();
