@@ -8,7 +8,8 @@ use super::refusal::refusals;
 use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::visible::visible;
-use crate::compile::{Study, study::Query};
+use crate::compile::Study;
+use crate::compile::study::{Ask, Query};
 use crate::engine::shards::{Column, Part, Stored, again};
 use crate::engine::{Budget, Call, CommandLine, Fault, Nobody, Threads, run};
 use crate::kernel::driver::{Drivers, MakeDrivers};
@@ -24,8 +25,8 @@ const UNSAID: [&str; 9] =
     ["file", "line", "shrunk", "no_way", "stopped_by", "shortfall", "warnings", "means", "model"];
 /// Numbers that another version rounds otherwise are the same.
 const SAME: f64 = 1e-9;
-/// More worlds and columns than a certificate has.
-const MANY: usize = 1 << 16;
+/// More columns, of all worlds together, than a certificate has.
+const MANY: usize = 1 << 20;
 
 /// A world in which nothing happens.
 const NOTHING: &str = "process p { var x = 1 }";
@@ -185,12 +186,20 @@ fn study(entry: &Entry) -> Result<Study, String> {
     let targets = entry.queries.iter().flat_map(|query| certificate::columns(&query.ask));
     let split = entry.queries.iter().filter_map(|query| certificate::split(&query.ask));
     let runs = split.flat_map(|(world, both)| both.map(|column| (None, (world, None, column))));
-    let (mut worlds, mut columns) = (0, 0);
+    let (mut worlds, mut columns) = (0_usize, 0_usize);
+    for query in &entry.queries {
+        if let Ask::Rank { options, measure, models, .. } = &query.ask {
+            if options.is_empty() || options.len().checked_rem(*models) != Some(0) {
+                return Err(format!("it has {} options under {models} values", options.len()));
+            }
+            columns = columns.max(measure.target.column);
+        }
+    }
     for (_, (world, _, column)) in targets.chain(runs) {
         (worlds, columns) = (worlds.max(world), columns.max(column));
     }
-    if worlds.max(columns) > MANY {
-        return Err(format!("it names a world or a column beyond {MANY}"));
+    if worlds.saturating_add(1).saturating_mul(columns.saturating_add(1)) > MANY {
+        return Err(format!("it names column {columns} of world {worlds}"));
     }
     let mut world = study.worlds.swap_remove(0);
     let [truth, time] = &world.columns[..] else { return Err("it has no two columns".to_owned()) };

@@ -228,7 +228,7 @@ pub fn read_by(queries: &[&Query], result: &QueryResult) -> Vec<(Option<String>,
             let count = match &query.ask {
                 // Splitting has some trials besides its runs.
                 Ask::Estimate { level: Some(_), .. } => u64::MAX,
-                Ask::Rank { models, .. } => count(result, k / width % models, option.as_deref()),
+                Ask::Rank { models, .. } => count(result, k / width % (*models).max(1), option.as_deref()),
                 _ => count(result, place, None),
             };
             all.push((option, column, count));
