@@ -210,11 +210,12 @@ pub(super) struct Check {
 
 /// `smc verify`
 #[derive(Args, Debug)]
+#[command(override_usage = "smc verify [OPTIONS] <CERTIFICATE> [<SCENARIO> <PROPERTIES>...]")]
 pub(super) struct VerifyCommand {
     /// The certificate.
     pub(super) certificate: String,
     /// The scenario and its property files, if they are to be compared with those of the certificate, too.
-    #[arg(value_name = "SCENARIO> <PROPERTIES>...")]
+    #[arg(value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Run so many trials again, which are drawn at random from all of the certificate, and compare their outcomes.
     #[arg(long, value_name = "N", value_parser = parse_count, requires = "files")]

@@ -71,10 +71,10 @@ fn beside(
         allow_run: arguments.allow_run,
         velocity: head.velocity.as_deref().and_then(|velocity| parse_velocity(velocity).ok()),
     };
-    let loaded = inputs::load(&model, &arguments.files[1..]);
-    let mut diagnostics = loaded.inputs.diagnostics;
-    let Some(mut study) = loaded.inputs.study else { return Err(diagnostics) };
-    diagnostics.clear();
+    // What is wrong with them is told with its place.
+    let Some((mut study, loaded)) = inputs::load_or_tell(&model, &arguments.files[1..], colors) else {
+        return Err(Vec::new());
+    };
     let other = |title: String| vec![complaint::certificate(title)];
     let prints: Vec<String> = loaded.inputs.prints.iter().map(|(_, print)| print.to_string()).collect();
     for (file, print) in &head.inputs {
@@ -84,10 +84,10 @@ fn beside(
     }
     let ways = Ways::default();
     let doubts = library::survey(&mut study, &[], head.seed, &ways);
-    if library::is_refused(&doubts) {
-        return Err(doubts);
-    }
     complaint::tell_all(&doubts, &loaded.inputs.sources, colors);
+    if library::is_refused(&doubts) {
+        return Err(Vec::new());
+    }
     if let Some(entry) = entries.iter().find(|entry| !is_asked(&study, entry)) {
         let query = entry.queries.first().map_or("", |query| query.text.as_str());
         return Err(other(format!("the property files do not ask `{query}` as the certificate has it")));
