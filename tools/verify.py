@@ -1,666 +1,453 @@
 """Checks a certificate of smc: `python3 tools/verify.py out.smcc`. Needs nothing but Python, and shares no code with the program.
 
-The digest of the lines is compared first. Then every decision, stop and interval is computed again from the outcomes, by the rules
-of docs/proofs.md. Exit code 0: all of them are right; 1: something is refused; 2: this is no certificate that can be read; 3: nothing
-is wrong, but some result follows a rule that is not checked here.
+The digest of the lines is compared first. Then every decision and interval, and every stop on which a claim depends, is computed again
+from the outcomes, by the rules of docs/proofs.md (theorems.py). Exit code 0: all of them are right; 1: something is refused; 2: this is
+no certificate that can be read; 3: nothing is wrong, but a result is not checked here.
+
+`python3 tools/verify.py out.smcc MODEL [PROPERTIES…] --program smc --audit 300` also runs trials again: see audit.py.
 """
 
+import argparse
 import base64
+import bisect
+import collections
 import hashlib
+import itertools
 import json
 import math
 import sys
 
+from theorems import (
+    ESTIMATES, RACE, SLACK, TESTS, Refused, Sequence, Unchecked, at_all_times, bisected, capitals, clopper_pearson, decided,
+    difference, gbas, held_at_all_times, hull, is_tail_above, is_tail_below, ln_tails, mean, mixed, require, tail,
+)
+
 FORMAT = "certificate 1"
-SLACK = 1e-9  # of thresholds in logarithms
 MOST = 10**8  # outcomes of one line
 INF = math.inf
-
-
-class Refused(Exception):
-    """A claim does not follow from the outcomes."""
 
 
 class Unreadable(Exception):
     """The file is no certificate, or a damaged one."""
 
 
-# Special functions: the incomplete beta function by its continued fraction (Lentz), quantiles by bisection.
+class Measure:
+    """A number of the law of trials: a probability, a mean, or the mean of the largest share; from 0 to 1."""
 
+    def __init__(self, of):
+        self.low, self.high = of.get("range", (0.0, 1.0))
+        self.scale, level = self.high - self.low, of.get("level")
+        self.kind = {"expectation": "mean" if level is None else "tail"}.get(of["kind"], of["kind"])
+        self.share = 1.0 - (level or 0.0)
 
-def ln_beta(a, b):
-    return math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b)
+    def to(self, x):
+        """A number from 0 to 1 in the unit of the measure."""
+        return self.low if x <= 0 else self.high if x >= 1 else self.low + self.scale * x
 
+    def part(self, x):
+        return (x - self.low) / self.scale
 
-def fraction(a, b, x):
-    c, d = 1.0, 1.0 - (a + b) * x / (a + 1)
-    d = 1.0 / (d if abs(d) > 1e-300 else 1e-300)
-    value = d
-    for m in range(1, 100_000):
-        for top in (m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)), -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))):
-            d, c = 1.0 + top * d, 1.0 + top / c
-            d = 1.0 / (d if abs(d) > 1e-300 else 1e-300)
-            c = c if abs(c) > 1e-300 else 1e-300
-            value *= c * d
-        if abs(c * d - 1.0) < 1e-15:
-            break
-    return value
+    def readings(self, line):
+        """Unresolved trials read as the least, and as the largest they can be; one reading where there are none."""
+        values, lost = line["truths"], set(line["unresolved"])
+        if "values" in line:
+            lost = {k for k, v in enumerate(line["values"]) if v is None}
+            values = [0.0 if v is None else self.part(min(max(v, self.low), self.high)) for v in line["values"]]
+        return [[end if k in lost else x for k, x in enumerate(values)] for end in (0, 1)] if lost else [values]
 
+    def running(self, reading, error, word):
+        """The intervals after every so many trials, which hold all at once."""
+        sequence, s = Sequence(error), 0
+        for n, x in enumerate(reading, 1):
+            s += x
+            if self.kind == "mean":
+                sequence.push(x)
+            if n % word == 0 or n == len(reading):
+                yield at_all_times(s, n - s, error) if self.kind == "probability" else sequence.ends()
 
-def ln_tails(a, b, x):
-    """Logarithms of P(X <= x) and P(X > x) for X of the law Beta(a, b)."""
-    if x <= 0.0 or x >= 1.0:
-        return (-INF, 0.0) if x <= 0.0 else (0.0, -INF)
-    front = a * math.log(x) + b * math.log1p(-x) - ln_beta(a, b)
-    if x < (a + 1) / (a + b + 2):
-        lower = front - math.log(a) + math.log(fraction(a, b, x))
-        return lower, math.log1p(-math.exp(min(lower, -1e-300)))
-    upper = front - math.log(b) + math.log(fraction(b, a, 1.0 - x))
-    return math.log1p(-math.exp(min(upper, -1e-300))), upper
+    def interval(self, line, error, told=None):
+        """The interval that holds at all numbers of trials."""
+        readings = self.readings(line)
+        if self.kind == "tail":
+            return tail(readings, self.share, error, told and (self.part(told["low"]), self.part(told["high"])))
+        return hull([(0.0, 1.0), *self.running(reading, error, INF)][-1] for reading in readings)
 
-
-def bisected(low, high, is_below):
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if is_below(middle) else (low, middle)
-    return low, high
-
-
-def clopper_pearson(s, f, error):
-    """Clopper and Pearson 1934: half of the error on either side."""
-    tail = math.log(0.5 * error)
-    low = 0.0 if s == 0 else bisected(0.0, 1.0, lambda p: ln_tails(s, f + 1, p)[0] < tail)[0]
-    high = 1.0 if f == 0 else bisected(0.0, 1.0, lambda p: ln_tails(s + 1, f, p)[1] > tail)[1]
-    return low, high
-
-
-def is_narrow(s, f, error, width):
-    low, high = clopper_pearson(s, f, error) if s <= f else clopper_pearson(f, s, error)
-    return high - low <= width
-
-
-def smallest(low, holds):
-    """The smallest whole number from `low` on that holds, of those after which all hold."""
-    step = 1
-    while not holds(low + step):
-        step *= 2
-    high = low + step
-    low -= 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if holds(middle) else (middle, high)
-    return high
-
-
-# Tests of a probability: each reads outcomes one by one and says `above`, `below`, `within` or nothing.
-
-
-class OneSided:
-    """A mixture of priors above theta against P <= theta (Robbins 1970); it rises with successes."""
-
-    def __init__(self, theta, error):
-        weight = 100 if 0.01 <= theta <= 0.99 else 10
-        self.theta, self.a, self.b = theta, max(weight * theta, 0.5), max(weight * (1 - theta), 0.5)
-        self.prior = ln_beta(self.a, self.b) + ln_tails(self.a, self.b, theta)[1]
-        self.threshold, self.wanted = SLACK - math.log(error), 0
-
-    def log(self, s, f):
-        a, b = self.a + s, self.b + f
-        mass = ln_beta(a, b) + ln_tails(a, b, self.theta)[1]
-        return mass - self.prior - s * math.log(self.theta) - f * math.log1p(-self.theta)
-
-    def reached(self, s, f):
-        # More failures never make fewer successes enough.
-        if s < self.wanted:
-            return False
-        if self.log(s, f) >= self.threshold:
-            return True
-        self.wanted = smallest(s, lambda more: self.log(more, f) >= self.threshold)
-        return False
-
-
-def eprocess(rule, ask):
-    above, below = OneSided(ask["theta"], rule["beta"]), OneSided(1 - ask["theta"], rule["alpha"])
-    return lambda s, f, success: "above" if success and above.reached(s, f) else "below" if not success and below.reached(f, s) else None
-
-
-def three_way(rule, ask):
-    theta, half = ask["theta"], 0.5 * rule["alpha"]
-    low, high = theta - rule["indifference"], theta + rule["indifference"]
-    above, below = OneSided(theta, half), OneSided(1 - theta, half)
-    over_low, under_high, passed = OneSided(low, half), OneSided(1 - high, half), [False, False]
-
-    def look(s, f, success):
-        if success:
-            passed[0] = passed[0] or over_low.reached(s, f)
-            found = "above" if above.reached(s, f) else None
+    def holds(self, bound, line, error, word):
+        """Whether trials show a constraint, or its opposite; nothing where they show neither."""
+        theta, at_least, readings = self.part(bound["threshold"]), bound["at_least"], self.readings(line)
+        if self.kind == "tail":
+            above, below = is_tail_above(readings[0], self.share, theta, error), is_tail_below(readings[-1], self.share, theta, error)
         else:
-            passed[1] = passed[1] or under_high.reached(f, s)
-            found = "below" if below.reached(f, s) else None
-        return found or ("within" if all(passed) else None)
-
-    return look
-
-
-def sprt(rule, ask):
-    """Wald 1945, at the thresholds 1/alpha and beta."""
-    low, high = ask["theta"] - rule["indifference"], ask["theta"] + rule["indifference"]
-    win, lose = math.log(low / high), math.log((1 - low) / (1 - high))
-    say_below, say_above = SLACK - math.log(rule["alpha"]), math.log(rule["beta"]) - SLACK
-
-    def look(s, f, _):
-        ratio = s * win + f * lose
-        return "below" if ratio >= say_below else "above" if ratio <= say_above else None
-
-    return look
-
-
-def sprt2(rule, ask):
-    """Lorden 1976: theta against each end of the region."""
-    theta, low, high = ask["theta"], ask["theta"] - rule["indifference"], ask["theta"] + rule["indifference"]
-
-    def look(s, f, _):
-        over = [s * math.log(theta / end) + f * math.log((1 - theta) / (1 - end)) for end in (low, high)]
-        if over[1] >= SLACK - math.log(rule["alpha"]):
-            return "below"
-        return "above" if over[0] >= SLACK - math.log(rule["beta"]) else None
-
-    return look
-
-
-def plan(rule, ask):
-    """A fixed size and a number of successes that accepts: both errors are binomial tails."""
-    size, accept = rule["trials"], rule["accept"]
-    low, high = ask["theta"] - rule["indifference"], ask["theta"] + rule["indifference"]
-    rejects, accepts = ln_tails(accept, size - accept + 1, high)[1], ln_tails(accept, size - accept + 1, low)[0]
-    if rejects > math.log(rule["alpha"]) + SLACK or accepts > math.log(rule["beta"]) + SLACK:
-        raise Refused(f"{accept} of {size} do not keep the errors")
-    return lambda s, f, _: "above" if s >= accept else "below" if f > size - accept else None
-
-
-TESTS = {"eprocess": eprocess, "three_way": three_way, "sprt": sprt, "sprt2": sprt2, "plan": plan}
-
-
-def claim_of(rule, ask, decision):
-    """What a decision of a test claims, and with which error."""
-    theta, error = ask["theta"], rule["beta" if decision == "above" else "alpha"] if "beta" in rule else rule["alpha"]
-    if decision == "within":
-        return {"Between": [theta - rule["indifference"], theta + rule["indifference"]]}, error
-    if "indifference" in rule and rule["name"] != "three_way":
-        return ({"Above": theta - rule["indifference"]} if decision == "above" else {"Below": theta + rule["indifference"]}), error
-    # `>=` and `<` put the threshold above, `>` and `<=` below.
-    names = ("AtLeast", "Below") if ask["at_least"] == ask["or_equal"] else ("Above", "AtMost")
-    return {names[decision == "below"]: theta}, error
-
-
-# Intervals.
-
-
-def held_at_all_times(s, f, error, p):
-    """Whether a probability is in the confidence sequence of Krichevsky and Trofimov: the evidence against it is below 1/error."""
-    if p <= 0 and s or p >= 1 and f:
-        return False
-    mixture = ln_beta(s + 0.5, f + 0.5) - ln_beta(0.5, 0.5)
-    return -(s * math.log(p) if s else 0.0) - (f * math.log1p(-p) if f else 0.0) < -math.log(error) - mixture + 1e-12
-
-
-def at_all_times(s, f, error):
-    """Its ends."""
-    share = s / (s + f) if s + f else 0.5
-    low = 0.0 if s == 0 else bisected(0.0, share, lambda p: not held_at_all_times(s, f, error, p))[0]
-    high = 1.0 if f == 0 else bisected(share, 1.0, lambda p: held_at_all_times(s, f, error, p))[1]
-    return low, high
-
-
-def okamoto(rule):
-    size = math.ceil(math.log(2 / rule["delta"]) / (2 * rule["epsilon"] ** 2))
-    return lambda s, f: s + f >= size, lambda s, f: (max(s / (s + f) - rule["epsilon"], 0), min(s / (s + f) + rule["epsilon"], 1))
-
-
-def fixed(rule):
-    return lambda s, f: s + f >= rule["trials"], lambda s, f: clopper_pearson(s, f, rule["delta"])
-
-
-def calibrated(rule):
-    """Stops when the interval at the level gamma is narrow. Nothing is narrower than with all further outcomes on one side."""
-    gamma, width, ahead = rule["gamma"], 2 * rule["epsilon"], [0]
-
-    def stops(s, f):
-        if s + f < ahead[0]:
-            return False
-        if is_narrow(s, f, gamma, width):
-            return True
-        grow = [lambda k: is_narrow(s + k, f, gamma, width), lambda k: is_narrow(s, f + k, gamma, width)]
-        ahead[0] = s + f + min(smallest(0, one) for one in grow)
-        return False
-
-    return stops, lambda s, f: clopper_pearson(s, f, gamma)
-
-
-def spending(rule):
-    """A union bound over looks, each half as many trials later than the one before."""
-
-    def schedule(level):
-        first = math.ceil(math.log(0.5 * level) / math.log1p(-2 * rule["epsilon"])) if rule["epsilon"] < 0.5 else 1
-        last = smallest(1, lambda n: is_narrow(n // 2, n - n // 2, level, 2 * rule["epsilon"]))
-        looks, n = [], max(first, 1)
-        while math.ceil(n) < last:
-            looks.append(math.ceil(n))
-            n *= 1.5
-        return looks + [last]
-
-    number = rule["looks"]
-    level = rule["delta"] / number
-    looks = schedule(level)
-
-    def stops(s, f):
-        return s + f >= looks[-1] or s + f in looks and is_narrow(s, f, level, 2 * rule["epsilon"])
-
-    return stops, lambda s, f: clopper_pearson(s, f, level)
-
-
-def massart(rule):
-    """Jegourel, Sun and Dong 2017: the bound of Massart, at the end of a running interval that is nearest to one half."""
-    epsilon, share = rule["epsilon"], rule["auxiliary"]
-    limit = math.ceil(math.log(2 / rule["delta"]) / (2 * epsilon**2))
-
-    def stops(s, f):
-        low, high = clopper_pearson(s, f, share)
-        p = high if high < 0.5 else 1 - low if low > 0.5 else None
-        spread = (1.5 + epsilon) ** 2 if p is None else (3 * p + epsilon) * (3 * (1 - p) - epsilon)
-        return s + f >= min(limit, 2 / (9 * epsilon**2) * math.log(2 / (rule["delta"] - share)) * spread)
-
-    return stops, lambda s, f: (max(s / (s + f) - epsilon, 0), min(s / (s + f) + epsilon, 1))
-
-
-ESTIMATES = {"okamoto": okamoto, "clopper_pearson": fixed, "calibrated": calibrated, "spending": spending, "massart": massart}
+            above = any(low > theta or at_least and low == theta for low, _ in self.running(readings[0], error, word))
+            below = any(high < theta or not at_least and high == theta for _, high in self.running(readings[-1], error, word))
+        return above == at_least if above or below else None
 
 
 # Results.
 
 
+def alike(a, b, slack=1e-7):
+    return a == b or abs(a - b) <= slack * max(abs(a), abs(b)) + 1e-11
+
+
 def near(a, b, what, slack=1e-7):
     """That a number of the file is the one that was computed."""
-    if a is None or b is None or not (a == b or abs(a - b) <= slack * max(1.0, abs(a), abs(b))):
-        raise Refused(f"{what} is {b}, not {a}")
+    require(None not in (a, b) and alike(a, b, slack), f"{what} is {b}, not {a}")
+
+
+def follows(claim, wanted, error):
+    """That nothing more is claimed than what was found; where there is no claim nothing is."""
+    if claim is None:
+        return
+    ((form, told),) = claim["claim"].items()
+    require(form in wanted, f"the claim is {claim}, not {wanted}")
+    if form == "Between":
+        least, most = (end if told[name] is None else told[name] for name, end in (("low", -INF), ("high", INF)))
+        low, high = wanted[form]
+        is_no_more = (least <= low or alike(least, low)) and (most >= high or alike(most, high))
+    else:
+        flat = [[x if isinstance(x, list) else [x] for x in one.values()][0] for one in (told, wanted[form])]
+        is_no_more = [*told] == [*wanted[form]] and all(abs(a - b) < 1e-12 for a, b in zip(*flat, strict=True))
+    require(is_no_more and claim["error"] >= error - 1e-12, f"the claim is {claim}, not {wanted} with error {error}")
+
+
+def ended(result, low, high, unbounded=(-INF, INF)):
+    """That the ends of a result are those that were computed."""
+    told = [end if result[name] is None else result[name] for name, end in zip(("low", "high"), unbounded)]
+    near(low, told[0], "the lower end")
+    near(high, told[1], "the upper end")
+    return {"Between": (low, high)}
+
+
+def bounded(line, low, high):
+    """The ends for a number that may be known to be never below 0."""
+    return max(low, 0.0) if line.get("time") else low, high
 
 
 def until(look, truths):
-    """The first trial after which a rule stops, and what it says; the end of the outcomes and nothing where it does not."""
+    """The numbers of successes and failures after which a rule stops, and what it says; the end and nothing where it does not."""
     s = f = 0
     for truth in truths:
         s, f = s + truth, f + (not truth)
-        found = look(s, f, truth)
-        if found:
+        if found := look(s, f, truth):
             return s, f, found
     return s, f, None
 
 
-def cases(outcomes):
-    """Unresolved trials read as false, and read as true."""
-    truths, lost = outcomes["truths"], set(outcomes["unresolved"])
-    return [[t or (is_true and k in lost) for k, t in enumerate(truths)] for is_true in ((False, True) if lost else (False,))]
+def stopped(result, found):
+    """That the rule stops after the trials of the result, in the reading that takes longer."""
+    most = max(s + f for s, f, _ in found)
+    require(result["trials"] == most, f"the rule stops after {most} trials, not {result['trials']}")
 
 
-def check(result, ask, claim, outcomes):
-    rule = result["method"]
-    found = [until(TESTS[rule["name"]](rule, ask), case) for case in cases(outcomes)]
-    decisions = {one[2] for one in found}
-    if result["trials"] != max(s + f for s, f, _ in found):
-        raise Refused(f"the rule stops after {max(s + f for s, f, _ in found)} trials, not {result['trials']}")
-    decision = decisions.pop() if len(decisions) == 1 else None
-    verdict = {None: "undecided", "within": "undecided"}.get(decision) or ("satisfied" if (decision == "above") == ask["at_least"] else "violated")
-    if decision and result["verdict"] != verdict or not decision and result["verdict"] in ("satisfied", "violated"):
-        raise Refused(f"the outcomes say {verdict}, not {result['verdict']}")
-    if decision:
-        wanted, error = claim_of(rule, ask, decision)
-        told = (claim or {}).get("claim", {}).get("Decided", {})
-        if list(told) != list(wanted) or not near_all(told, wanted) or claim["error"] < error - 1e-12:
-            raise Refused(f"the claim is {claim}, not {wanted} with error {error}")
-        ends = [at_all_times(s, f, ask["beside"]) for s, f, _ in (until(lambda *_: None, case) for case in cases(outcomes))]
-        near(min(low for low, _ in ends), result["low"], "the lower end", 1e-6)
-        near(max(high for _, high in ends), result["high"], "the upper end", 1e-6)
-
-
-def near_all(told, wanted):
-    flat = [x if isinstance(x, list) else [x] for x in (*told.values(), *wanted.values())]
-    return all(abs(a - b) < 1e-12 for a, b in zip(flat[0], flat[1]))
-
-
-def estimate(result, ask, claim, outcomes):
-    rule = result["method"]
-    ends = []
-    for case in cases(outcomes):
-        stops, interval = ESTIMATES[rule["name"]](rule)
-        s, f, found = until(lambda s, f, _: stops(s, f), case)
-        ends.append((s + f, found, interval(s, f) if found else at_all_times(s, f, rule["delta"])))
-    if result["trials"] != max(n for n, *_ in ends):
-        raise Refused(f"the rule stops after {max(n for n, *_ in ends)} trials, not {result['trials']}")
-    low, high = min(one[2][0] for one in ends), max(one[2][1] for one in ends)
-    bounded(result, claim, low, high, rule["delta"])
-
-
-class Sequence:
-    """The empirical Bernstein confidence sequence of Waudby-Smith and Ramdas 2024, of values in [0, 1]."""
-
-    def __init__(self, error, aim):
-        self.log, self.aim, self.n = math.log(2 / error), aim, 0
-        self.sum = self.squares = self.bets = self.weighted = self.variance = 0.0
-
-    def push(self, x):
-        t = self.n + 1.0
-        mean, spread = (0.5 + self.sum) / t, (0.25 + self.squares) / t
-        bet = min(math.sqrt(2 * self.log / (spread * (self.aim or t * math.log(1 + t)))), 0.5)
-        self.n, self.sum = self.n + 1, self.sum + x
-        self.squares += (x - (0.5 + self.sum) / (t + 1)) ** 2
-        self.bets, self.weighted = self.bets + bet, self.weighted + bet * x
-        self.variance += (x - mean) ** 2 * (-math.log1p(-bet) - bet)
-
-    def ends(self, size, cap, reach):
-        """Lower and upper end; at the size that is fixed beforehand Hoeffding's interval holds as well."""
-        centre, radius = (self.weighted / self.bets, (self.log + self.variance) / self.bets) if self.n else (0.5, 0.5)
-        low, high, mean = centre - radius, centre + radius, self.sum / max(self.n, 1)
-        if size and self.n >= size:
-            hoeffding = reach or math.sqrt(math.log(2 / cap) / (2 * self.n))
-            low, high = (mean - reach, mean + reach) if reach else (max(low, mean - hoeffding), min(high, mean + hoeffding))
-        return low, high
-
-
-def mean(rule, pairs, span):
-    """The interval of a mean of values in a range, each given as its least and its largest possible value; and when it stops."""
-    low, high = span
-    planned = rule["epsilon"] / (high - low) if rule["name"] == "okamoto" else None
-    epsilon = rule.get("epsilon") if not planned else None
-    cap = 0.0 if planned or not ("trials" in rule or epsilon) else 0.2 * rule["delta"]
-    size = math.ceil(math.log(2 / cap) / (2 * (epsilon / (high - low)) ** 2)) if epsilon else rule.get("trials")
-    aim = size if not epsilon else None
-    ends = [Sequence(rule["delta"] - cap, aim) for _ in range(2)]
-    stopped = None
-    for n, pair in enumerate(pairs, 1):
-        for end, value in zip(ends, pair):
-            end.push((min(max(value, low), high) - low) / (high - low))
-        if epsilon and stopped is None:
-            (a, b), (c, d) = (end.ends(None, cap, None) for end in ends)
-            half, apart = 0.5 * (max(b, d) - min(a, c)), (ends[1].sum - ends[0].sum) / n
-            part = epsilon / (high - low)
-            if half <= part or b - a <= 2 * part and d - c <= 2 * part and apart > part:
-                stopped = n
-    found = [end.ends(size, cap, planned) for end in ends]
-    to = lambda x: low if x <= 0 else high if x >= 1 else low + (high - low) * x
-    return to(min(a for a, _ in found)), to(max(b for _, b in found)), min(x for x in (stopped, size, INF) if x is not None)
-
-
-def expectation(result, ask, claim, outcomes):
-    span = ask["estimate"]["range"]
-    low, high, size = mean(result["method"], [(span if v is None else (v, v)) for v in outcomes["values"]], span)
-    bounded(result, claim, low, high, result["method"]["delta"])
-    if min(size, len(outcomes["values"])) != result["trials"]:
-        raise Refused(f"the rule stops after {size} trials, not {result['trials']}")
-
-
-def bounded(result, claim, low, high, error):
-    near(low, result["low"] if result["low"] is not None else -INF, "the lower end")
-    near(high, result["high"] if result["high"] is not None else INF, "the upper end")
-    told = (claim or {}).get("claim", {}).get("Between")
-    if told:
-        least, most = (-INF if told["low"] is None else told["low"]), (INF if told["high"] is None else told["high"])
-        if least > low + 1e-7 * max(1, abs(low)) or most < high - 1e-7 * max(1, abs(high)) or claim["error"] < error - 1e-12:
-            raise Refused(f"the claim is {claim}, not [{low}, {high}] with error {error}")
-
-
-def under_every(result, queries, claim, lines):
-    """A check under every value of a parameter: each is a check of its own, and all errors add up."""
-    verdicts, error = [], 0.0
-    for query, line, part in zip(queries, lines, result["every"]["values"], strict=True):
-        _, _, ask = asked(query)
-        rule = result["method"]
-        found = {until(TESTS[rule["name"]](rule, ask), case) for case in cases(line)}
-        if part["trials"] != max(s + f for s, f, _ in found):
-            raise Refused(f"the rule stops after {max(s + f for s, f, _ in found)} trials, not {part['trials']}")
-        decisions = {one[2] for one in found}
+def check(result, ask, line):
+    """The verdict, what it claims, and with which error."""
+    measure, rule, error = Measure(ask["measure"]), result["method"], ask["beside"]
+    if measure.kind == "probability":
+        require(rule["name"] == ask["test"]["name"], f"`{ask['test']['name']}` was asked for, not `{rule['name']}`")
+        found = [until(TESTS[rule["name"]](rule, ask["threshold"]), reading) for reading in measure.readings(line)]
+        stopped(result, found)
+        decisions = {decision for *_, decision in found}
         decision = decisions.pop() if len(decisions) == 1 else None
-        verdicts.append("undecided" if decision in (None, "within") else "satisfied" if (decision == "above") == ask["at_least"] else "violated")
-        error += max(rule["alpha"], rule.get("beta", 0.0))
-    verdict = "violated" if "violated" in verdicts else "satisfied" if set(verdicts) == {"satisfied"} else "undecided"
-    if result["verdict"] != verdict or [part["verdict"] for part in result["every"]["values"]] != verdicts:
-        raise Refused(f"the outcomes say {verdict}: {', '.join(verdicts)}")
-    if verdict == "satisfied" and claim["error"] < error - 1e-12:
-        raise Refused(f"the error is {error}, not {claim['error']}")
+    error = error if measure.kind == "probability" else rule["delta"]
+    low, high = bounded(line, *(measure.to(x) for x in measure.interval(line, error, result)))
+    if measure.kind != "probability":
+        decision = "above" if low > ask["threshold"] else "below" if high < ask["threshold"] else None
+    verdict = "undecided" if decision in (None, "within") else "satisfied" if (decision == "above") == ask["at_least"] else "violated"
+    require(result["verdict"] == verdict, f"the outcomes say {verdict}, not {result['verdict']}")
+    found = ended(result, low, high)
+    if decision and measure.kind != "probability":
+        return {"Decided": {"Above" if decision == "above" else "Below": ask["threshold"]}}, error
+    claim, wrong = decided(rule, ask, decision) if decision else (None, error)
+    return ({"Decided": claim} if decision else found), wrong
 
 
-def curve(result, ask, claim, outcomes):
-    """A band around a distribution function (Dvoretzky, Kiefer and Wolfowitz; Massart 1990), here at its last bound."""
-    values, rule, last = outcomes["values"], result["method"], ask["estimate"]["times"][-1]
-    n, radius = len(values), math.sqrt(math.log(2 / rule["delta"]) / (2 * len(values)))
-    if n != rule["trials"]:
-        raise Refused(f"{n} trials of {rule['trials']}")
+def checks(result, queries, claim, lines):
+    """A check, or one under every value of a parameter: each is a check of its own, and all errors add up."""
+    parts = result["every"]["values"] if "every" in result else [result]
+    found = [check({**result, **part}, query["ask"]["check"], line) for part, query, line in zip(parts, queries, lines, strict=True)]
+    verdicts = [part["verdict"] for part in parts]
+    verdict = "violated" if "violated" in verdicts else "satisfied" if {*verdicts} == {"satisfied"} else "undecided"
+    require(result["verdict"] == verdict, f"the outcomes say {verdict}: {', '.join(verdicts)}")
+    least = next(k for k, part in enumerate(parts) if len(parts) == 1 or part["value"] == result["every"]["least"])
+    follows(claim, found[least][0], sum(error for _, error in found) if verdict == "satisfied" else found[least][1])
+
+
+def band(n, rule):
+    """Dvoretzky, Kiefer and Wolfowitz, with the constant of Massart 1990. Before its end the error is spent over all numbers of trials."""
+    return math.sqrt(math.log(2 * (n * (n + 1) if n < rule["trials"] else 1) / rule["delta"]) / (2 * n))
+
+
+def quantile(rule, level, values):
+    """Order statistics: ranks from binomial tails; or from the band."""
+    n, known, error = len(values), sorted(v for v in values if v is not None), rule["delta"]
+    first = lambda holds: bisect.bisect_left(range(n), True, key=holds)
+    if rule["name"] == "dkw":
+        lower, upper = math.floor((level - band(n, rule)) * n), math.ceil((level + band(n, rule)) * n)
+    elif n < rule["trials"]:
+        is_in = lambda k: held_at_all_times(k, n - k, 0.5 * error, level)
+        lower, upper = first(lambda k: k / n >= level or is_in(k)), first(lambda k: (k + 1) / n > level and not is_in(k + 1)) + 1
+    else:
+        goal = math.log(0.5 * error)
+        lower = first(lambda k: ln_tails(k + 1, n - k, level)[1] > goal)
+        upper = first(lambda k: ln_tails(k + 1, n - k, level)[0] <= goal) + 1
+    ranked = [-INF] * (n - len(known) + 1) + known  # those that are unresolved lie below everything, or above
+    return ranked[max(lower, 0)], known[upper - 1] if 0 < upper <= len(known) else INF
+
+
+def curve(rule, of, values):
+    """The band, at the last bound of the curve."""
+    n, last = len(values), of["times"][-1] + 1e-9
     low = sum(v is not None and v <= last for v in values) / n
-    high = low + values.count(None) / n
-    bounded(result, claim, max(low - radius, 0.0), min(high + radius, 1.0), rule["delta"])
+    low, high = max(low - band(n, rule), 0.0), min(low + values.count(None) / n + band(n, rule), 1.0)
+    return (1.0 - high, 1.0 - low) if of["falls"] else (low, high)
 
 
-def check_mean(result, ask, claim, outcomes):
-    """The sequence holds at all times, so the test stops once it lies on one side of the threshold."""
-    rule, theta, span = result["method"], ask["theta"], ask["check"]["range"]
-    (low, high), ends, stop = span, [Sequence(rule["delta"], None) for _ in range(2)], None
-    for n, value in enumerate(outcomes["values"], 1):
-        for end, v in zip(ends, span if value is None else (value, value)):
-            end.push((min(max(v, low), high) - low) / (high - low))
-        (a, b), (c, d) = (end.ends(None, 0, None) for end in ends)
-        a, b = (min(max(low + (high - low) * x, low), high) for x in (min(a, c), max(b, d)))
-        if a > theta or b < theta:
-            stop = n
-            break
-    if result["trials"] != (stop or len(outcomes["values"])):
-        raise Refused(f"the rule stops after {stop} trials, not {result['trials']}")
-    near(a, result["low"], "the lower end")
-    near(b, result["high"], "the upper end")
-    verdict = "undecided" if not stop else "satisfied" if (a > theta) == ask["at_least"] else "violated"
-    if stop and (result["verdict"] != verdict or claim["claim"]["Decided"] != {"Above" if a > theta else "Below": theta} or claim["error"] < rule["delta"] - 1e-12):
-        raise Refused(f"the outcomes say {verdict}, at an error of {rule['delta']}")
-    if not stop and result["verdict"] in ("satisfied", "violated"):
-        raise Refused("the outcomes decide nothing")
-
-
-def quantile(result, ask, claim, outcomes):
-    """Order statistics: ranks from binomial tails; or from the band of Dvoretzky, Kiefer and Wolfowitz (Massart 1990)."""
-    rule, q, values = result["method"], ask["estimate"]["level"], outcomes["values"]
-    n, known = len(values), sorted(v for v in values if v is not None)
-    lost, error = n - len(known), rule["delta"]
-    early = n < rule["trials"]
-    if rule["name"] != "order_statistics":
-        # A budget that ended sampling spends the error over all numbers of trials.
-        reach = math.sqrt(math.log(2 * (n * (n + 1) if early else 1) / error) / (2 * n))
-        lower, upper = math.floor((q - reach) * n), math.ceil((q + reach) * n)
-    elif early:
-        is_in = lambda k: held_at_all_times(k, n - k, 0.5 * error, q)
-        lower = next((k for k in range(n) if k / n >= q or is_in(k)), n)
-        upper = next((k for k in range(n) if (k + 1) / n > q and not is_in(k + 1)), n) + 1
+def estimate(result, queries, claim, lines):
+    ask, rule, line = queries[0]["ask"]["estimate"], result["method"], lines[0]
+    measure = Measure(ask["measure"])
+    if measure.kind == "probability":
+        readings = measure.readings(line)
+        # The estimate of two readings does not say what each of them is.
+        known = result["estimate"] if len(readings) == 1 else None
+        stops, interval = gbas(rule, known) if rule["name"] == "gbas" else ESTIMATES[rule["name"]](rule)
+        found = [until(lambda s, f, _: stops(s, f), reading) for reading in readings]
+        stopped(result, found)
+        low, high = hull(interval(s, f) if is_over else at_all_times(s, f, rule["delta"]) for s, f, is_over in found)
+    elif measure.kind == "mean":
+        low, high = bounded(line, *map(measure.to, mean(rule, measure.readings(line), measure.scale)))
+    elif measure.kind == "tail":
+        low, high = map(measure.to, measure.interval(line, rule["delta"], result))
+    elif measure.kind == "quantile":
+        low, high = bounded(line, *quantile(rule, ask["measure"]["level"], line["values"]))
     else:
-        tail = math.log(0.5 * error)
-        lower = next((k for k in range(n) if ln_tails(k + 1, n - k, q)[1] > tail), n)
-        upper = next((k for k in range(n) if ln_tails(k + 1, n - k, q)[0] <= tail), n) + 1
-    value = lambda rank, below: -INF if rank <= below else known[rank - below - 1] if rank - below <= len(known) else INF
-    least = 0.0 if outcomes.get("time") else -INF
-    bounded(result, claim, max(value(lower, lost) if lower >= 1 else -INF, least), value(upper, 0) if upper <= n else INF, error)
+        low, high = curve(rule, ask["measure"], line["values"])
+    follows(claim, ended(result, low, high), rule["delta"])
 
 
-def difference(low_pairs, error):
-    """Bets on the difference of pairs, which hold at all times (Ville 1939): the lower end, from (first, alike, second)."""
-    first, alike, second = low_pairs
-    bets = [math.exp(math.log(0.002) + k / 15 * math.log(0.95 / 0.002)) for k in range(16)]
-    threshold = math.log(2 / error) + SLACK
-
-    def against(m):
-        logs = [first * math.log1p(b / (1 + m) * (1 - m)) + alike * math.log1p(-b / (1 + m) * m) + second * math.log1p(-b) for b in bets]
-        return max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs) / len(logs))
-
-    total = first + alike + second
-    return bisected(-1 + 1e-15, (first - second) / total, lambda m: against(m) >= threshold)[0] if total else -1.0
-
-
-def compare(result, ask, claim, first, second):
-    rule, error = result["method"], ask["delta"]
-    if "range" in ask["compare"]:
-        (low, high), pairs = ask["compare"]["range"], []
-        clip = lambda v: (low, high) if v is None else (min(max(v, low), high),) * 2
-        for a, b in zip(first["values"], second["values"]):
-            (a, b), (c, d) = clip(a), clip(b)
-            pairs.append((a - d, b - c))
-        found = mean(rule, pairs, (low - high, high - low))[:2]
+def compare(result, queries, claim, lines):
+    ask, rule = queries[0]["ask"]["compare"], result["method"]
+    measure = Measure(ask["first"])
+    if measure.kind == "tail":
+        sides = [measure.interval(line, 0.5 * ask["delta"], result[side]) for line, side in zip(lines, ("first", "second"))]
+        low, high = (measure.scale * (sides[0][k] - sides[1][1 - k]) for k in (0, 1))
     else:
-        counts = []
-        for is_high in (False, True):
-            a = cases(first)[-1 if is_high else 0]
-            b = cases(second)[0 if is_high else -1]
-            counts.append((sum(x and not y for x, y in zip(a, b)), sum(x == y for x, y in zip(a, b)), sum(y and not x for x, y in zip(a, b))))
-        (a, b, c), found = counts[1], (difference(counts[0], error), 0)
-        found = (found[0], -difference((c, b, a), error))
-    bounded(result, claim, *found, error)
+        # Unresolved trials are read against the first and for the second, and the other way round.
+        first, second = (measure.readings(line) for line in lines)
+        pairs = [[a - b for a, b in zip(first[k], second[-1 - k])] for k in ((0, -1) if len(first) + len(second) > 2 else (0,))]
+        if measure.kind == "probability":
+            counts = [[pair.count(d) for d in (1, 0, -1)] for pair in (pairs[0], pairs[-1])]
+            low, high = difference(counts[0], ask["delta"]), -difference(counts[1][::-1], ask["delta"])
+        else:
+            found = mean(rule, [[0.5 * (d + 1) for d in pair] for pair in pairs], 2 * measure.scale)
+            low, high = (min(max(2 * x - 1, -1), 1) * measure.scale for x in found)
+    follows(claim, ended(result, low, high), ask["delta"])
 
 
-def rank_fixed(result, ask, claim, lines):
-    """Hoeffding's interval of half of the gap around each option, all at once: the one with the largest share is chosen."""
-    rule, told = result["method"], claim["claim"]["Best"]
-    size = math.ceil(2 * math.log(2 * len(lines) / rule["delta"]) / rule["epsilon"] ** 2)
-    shares = {line["option"]: [sum(case) / max(len(case), 1) for case in cases(line)] for line in lines}
-    if any(line["count"] < size for line in lines):
-        raise Refused(f"an option has fewer than {size} trials")
-    lost = max(case[-1] for case in shares.values()) - shares[told["choice"]][0]
-    if told["gap"] < rule["epsilon"] + lost - 1e-9 or claim["error"] < rule["delta"] - 1e-12:
-        raise Refused(f"`{told['choice']}` is {lost} from the largest share")
+# Rankings.
 
 
-def rank(result, ask, claim, lines):
-    """The choice is within the gap of every option: paired bets on each rival, which is taken to hold where it has no trial. Options
-    that left the race were worse than another one, on the trials that both had."""
-    rule, kind = result["method"], ask["rank"]
-    low, high = kind.get("range", (0.0, 1.0))
-    scale = lambda v: (0.0, 1.0) if v is None else (min(max((v - low) / (high - low), 0), 1),) * 2
-    table = {}
-    for line in lines:
-        lost = set(line["unresolved"])
-        values = line.get("values") or [None if k in lost else float(t) for k, t in enumerate(line["truths"])]
-        table[line["option"]] = [scale(v) for v in values]
-    told = (claim or {}).get("claim", {}).get("Best")
-    if not told:
-        raise Refused("a ranking without a choice is not certified") if claim else KeyError("no claim")
-    choice, gap = told["choice"], told["gap"] / (high - low)
-    threshold = math.log(max(len(table) - 1, 1) / rule["delta"])
-    epsilon = rule["epsilon"] / (high - low)
-    bets = [math.exp(math.log(0.02) + k / 11 * math.log(0.95 / 0.02)) for k in range(12)]
+class Aim:
+    """A number of all options: which of them are shown to be no more than a gap better than others."""
 
-    def evidence(rival, leader, gap, is_completed):
-        least = max(epsilon, 0.25)
+    def __init__(self, of, epsilon, threshold, error, lines):
+        self.measure, self.threshold, self.error, self.lines = Measure(of), threshold, error, lines
+        self.epsilon, self.known = epsilon / self.measure.scale, {}
+        self.readings = {option: self.measure.readings(line) for option, line in lines.items()}
+
+    def interval(self, option):
+        if option not in self.known:
+            self.known[option] = self.measure.interval(self.lines[option], self.error)
+        return self.known[option]
+
+    def shows(self, rival, leader, gap):
+        """Bets on the difference of pairs, after any number of them; where the rival has no more trials they are taken to hold."""
+        if self.measure.kind == "tail":
+            return self.interval(rival)[1] <= self.interval(leader)[0] + gap + 2e-6  # the precision of ends
+        own, other = self.readings[leader][0], self.readings[rival][-1]
+        least = max(self.epsilon, 0.25)
         part = (1 - least) / max(1 - gap, 1e-6) if gap > least else 1.0
-        own, other = table[leader], table[rival]
-        count = len(own) if is_completed else min(len(own), len(other))
-        differences = {}
-        for k in range(count):
-            d = (other[k][1] if k < len(other) else 1.0) - own[k][0]
-            differences[d] = differences.get(d, 0) + 1
-        logs = [sum(n * math.log(1 + bet * part * (gap - d)) for d, n in differences.items()) for bet in bets]
-        return max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs) / len(logs))
+        changes, common = collections.Counter(), min(len(own), len(other))
+        for n, (a, b) in enumerate(itertools.zip_longest(own, other[: len(own)], fillvalue=1.0), 1):
+            changes[part * (gap - b + a)] += 1
+            if (n % 32 == 0 or n in (common, len(own))) and mixed(capitals(changes, RACE)) >= self.threshold - 1e-6:
+                return True
+        return False
 
-    for rival in table:
-        close = rival == choice or any(evidence(rival, choice, gap, whole) >= threshold - 1e-6 for whole in (False, True))
-        if not close and not any(evidence(rival, other, 0.0, False) >= threshold - 1e-6 for other in table if other != rival):
-            raise Refused(f"`{rival}` may be better than `{choice}` by more than {told['gap']}")
-    if claim["error"] < rule["delta"] - 1e-12:
-        raise Refused(f"the error is {rule['delta']}, not {claim['error']}")
+
+def rank(result, queries, claim, lines):
+    """The choice is within the gap of every option that may be better, and satisfies all constraints; or the front."""
+    ask, rule = queries[0]["ask"]["rank"], result["method"]
+    width, delta, measure, table = 1 + len(ask["beside"]), rule["delta"], Measure(ask["measure"]), {}
+    for k in range(0, len(lines), width):
+        table.setdefault(lines[k]["option"], []).append(lines[k : k + width])
+    require([line["option"] for line in lines] == [one["label"] for one in ask["options"] for _ in range(width)], "these are other options")
+    options, found = [*table], claim["claim"]
+    ((form, told),) = found.items() if isinstance(found, dict) else [(found, None)]
+    require(claim["error"] >= delta - 1e-12, f"the error is {delta}, not {claim['error']}")
+    if rule["name"] in ("okamoto", "least_score") or measure.kind == "tail" and not ask["beside"]:
+        ends = {option: joint(result, rule, measure, option, [line for line, *_ in table[option]], len(lines)) for option in options}
+        gap = max([ends[option][1] for option in options if option != told["choice"]], default=0.0) - ends[told["choice"]][0]
+        gap = measure.scale * max(gap, rule["epsilon"] if rule["name"] == "okamoto" else 0.0)
+        require(told["gap"] >= gap - 1e-6 * measure.scale, f"`{told['choice']}` is within {gap} of the best, not {told['gap']}")
+        return
+    aims = [(ask["measure"], rule["epsilon"]), *((one, one["role"]["aim"]["epsilon"]) for one in ask["beside"] if "aim" in one["role"])]
+    bounds = [(k, one, one["role"]["constraint"]) for k, one in enumerate(ask["beside"], 1) if "constraint" in one["role"]]
+    tails, k = sum(Measure(of).kind == "tail" for of, _ in aims), len(options)
+    # Constraints have half of the error, and so have the intervals of tails on a front; bets have the rest.
+    own = 0.5 * delta if bounds or tails else delta
+    misleading = k - 1 if form != "Front" else k * (k - 1) * len(aims)
+    threshold = math.log(max(misleading, 1) / own)
+    columns = lambda at: {option: table[option][0][at] for option in options}
+    aims = [Aim(of, epsilon, threshold, own / k / max(tails, 1), columns(at)) for at, (of, epsilon) in enumerate(aims)]
+    fits = {option: True for option in options}
+    for option in options:
+        for at, of, bound in bounds:
+            side, error = Measure(of), own / (k * len(bounds))
+            # An interval of a number has half of its error on either side, and only one side can mislead.
+            holds = side.holds(bound, table[option][0][at], error if side.kind == "probability" else 2 * error, rule["word"])
+            fits[option] = False if holds is False or fits[option] is False else fits[option] and holds
+    if form == "Nothing":
+        require(not any(fit is not False for fit in fits.values()), "an option may satisfy the constraints")
+    elif form == "Best":
+        choice, gap, aim = told["choice"], told["gap"] / measure.scale, aims[0]
+        require(fits[choice], f"`{choice}` may violate a constraint")
+        for rival in options:
+            is_worse = lambda: any(fits[other] and aim.shows(rival, other, 0.0) for other in options if other != rival)
+            close = rival == choice or fits[rival] is False or aim.shows(rival, choice, gap) or is_worse()
+            require(close, f"`{rival}` may be better than `{choice}` by more than {told['gap']}")
+    else:
+        matched = lambda one, other: all(aim.shows(one, other, aim.epsilon) for aim in aims)
+        kept = lambda one, other: any(aim.shows(other, one, 0.0) for aim in aims) or matched(other, one)
+        for option in options:
+            others = [other for other in told["options"] if other != option]
+            if option in told["options"]:
+                require(all(kept(option, other) for other in others), f"`{option}` may be dominated")
+            else:
+                require(any(matched(option, other) for other in others), f"`{option}` may exceed all of the front")
+
+
+def joint(result, rule, measure, option, lines, columns):
+    """The interval of the least score of an option under several models; those of all columns hold at once."""
+    size = math.ceil(2 * math.log(2 * columns / rule["delta"]) / rule["epsilon"] ** 2)
+    if rule["name"] == "okamoto" and all(line["count"] >= size for line in lines):
+        shares = [sum(reading) / len(reading) for reading in measure.readings(lines[0])]
+        return min(shares) - 0.5 * rule["epsilon"], max(shares) + 0.5 * rule["epsilon"]
+    told = next(one for one in result["options"] if one["option"] == option)
+    told = told.get("under") or [told]
+    ends = [measure.interval(line, rule["delta"] / columns, one) for line, one in zip(lines, told, strict=True)]
+    return min(low for low, _ in ends), min(high for _, high in ends)
+
+
+def splitting(result, queries, claim, lines, runs):
+    """Estimates of independent runs are unbiased, so bets on them certify a lower bound, and plain trials certify an upper one.
+    Student's interval of the runs is asymptotic: it is computed again, and certifies nothing."""
+    ask, told, line = queries[0]["ask"]["estimate"], result["splitting"], lines[0]
+    replicas, number, planned, delta, _ = ask["estimator"]["values"]
+    n, s, lost = line["count"], sum(line["truths"]), len(line["unresolved"])
+    interval, one_sided = (clopper_pearson, 2 * delta) if n == planned else (at_all_times, delta)
+    plain, above, floor = hull(interval(k, n - k, 0.01) for k in (s, s + lost)), interval(s + lost, n - s - lost, one_sided)[1], 0.0
+    is_adaptive, columns, found = ask["estimator"]["name"] == "splitting", [ask["measure"]["target"]["column"], ask["level"]], []
+    for reading in (False, True):
+        rule = lambda run: [run["columns"], run["rule"]["adaptive"], run["rule"]["replicas"], run["rule"]["delta"], run["lost_reaches"]]
+        wanted = [columns, is_adaptive, replicas, delta, reading]
+        own = [record for run, record in runs if rule(run) == wanted and 1 <= run["branch"] <= number]
+        for record in own if is_adaptive else []:
+            # The product of the shares that survive is largest if all are alike; paths beyond the first replace those that do not.
+            splits = max(len(record["levels"]), 1)
+            most = max(1 - (record["paths"] / replicas - 1) / splits, 0) ** splits
+            require(record["estimate"] <= most + SLACK, f"no run of {record['paths']} paths estimates {record['estimate']}")
+        if len(own) == number and (not reading or any(record["lost"] for _, record in runs)):
+            z = [record["estimate"] for record in own]
+            center, x = sum(z) / number, bisected(0.0, 1.0, lambda x: ln_tails(0.5 * number - 0.5, 0.5, x)[0] < math.log(delta))[0]
+            spread = math.sqrt(sum((y - center) ** 2 for y in z) / number / (number - 1))
+            half = math.sqrt((number - 1) * (1 - x) / x) * spread
+            capital = lambda m: mixed(capitals(collections.Counter(y / m - 1 for y in z), [0.1, 0.3, 0.6, 0.9]))
+            floor = floor if reading else bisected(0.0, max(z), lambda m: capital(m) >= -math.log(delta))[0]
+            found.append((center, max(center - half, 0.0), center + half))
+    if found:
+        means, lows, highs = zip(*found)
+        wanted = {"estimate": sum(means) / len(means), "low": min(lows), "high": max(highs), "floor": floor}
+        for name, value in wanted.items():
+            near(value, told[name], f"`{name}` of the runs")
+        above = plain[1] if any(above < mean <= plain[1] for mean in means) else above
+    is_clear = floor <= above
+    low, high = floor if is_clear else 0.0, above if is_clear and n else 1.0
+    follows(claim, {"Between": (low, high)}, ((low > 0) + (high < 1)) * delta)
+    return " (the interval of the runs is not certified: asymptotic)"
 
 
 # The file.
 
 
 def unpacked(line):
-    count = line["count"]
+    """The outcomes of a line as truth values, or as numbers."""
+    count, truths = line["count"], []
     if not 0 <= count <= MOST:
         raise Unreadable(f"{count} outcomes are more than are read")
-    line.setdefault("truths", [])
     if "runs" in line:
-        if sum(line["runs"]) != count:
-            raise Unreadable("runs and count differ")
-        for k, length in enumerate(line["runs"]):
-            line["truths"] += [k % 2 == 1] * length
+        for k, length in enumerate(line["runs"] if sum(line["runs"]) == count else []):
+            truths += [k % 2 == 1] * length
     elif "bits" in line:
         data = base64.b64decode(line["bits"], validate=True)
-        if len(data) != -(-count // 8):
-            raise Unreadable("bits and count differ")
-        line["truths"] = [data[k // 8] >> k % 8 & 1 == 1 for k in range(count)]
+        truths = [data[k // 8] >> k % 8 & 1 == 1 for k in range(count)] if len(data) == -(-count // 8) else []
     else:
         line["values"] = [float(v) if isinstance(v, str) else v for v in line["values"]]
-    if line["unresolved"] and max(line["unresolved"]) >= count:
-        raise Unreadable("an unresolved trial is not there")
-    return line
+    lost = line["unresolved"]
+    if len(line.get("values", truths)) != count or lost != sorted({*lost}) or lost and not 0 <= lost[0] <= lost[-1] < count:
+        raise Unreadable("outcomes and their count differ")
+    return {**line, "truths": truths}
 
 
-def asked(query):
-    """What a query asks: check, estimate, compare or rank; of which kind of number, in which range."""
-    ((word, ask),) = query["ask"].items()
-    measure = ask.get("measure") or ask["first"]
-    kind = {"expectation": "mean" if measure.get("level") is None else "tail"}.get(measure["kind"], measure["kind"])
-    return word, kind, {**ask, word: measure, "theta": ask.get("threshold")}
+def counted(told, lines, is_share=True):
+    """That trials, successes and failures are those of the outcomes, and that the estimate is their share."""
+    count, lost = sum(line["count"] for line in lines), sum(len(line["unresolved"]) for line in lines)
+    require(count == told["trials"], f"{count} outcomes for {told['trials']} trials")
+    held = sum(sum(line["truths"]) - sum(line["truths"][k] for k in line["unresolved"] if line["truths"]) for line in lines)
+    failed = sum(len(line["truths"]) for line in lines)
+    failed = failed and failed - held - lost
+    found = lost, held, failed
+    said = told["unresolved"], told["successes"], told["failures"]
+    require(found == said, f"of the outcomes {held} hold, {failed} fail, and {lost} are unresolved")
+    if held + failed and is_share:
+        near((held + 0.5 * lost) / count, told["estimate"], "the estimate", 1e-9)
 
 
-def counted(result, word, lines):
-    """That trials, successes and failures are those of the outcomes."""
-    if word == "rank":
-        return
-    if sum(line["count"] for line in lines) != result["trials"]:
-        raise Refused(f"{sum(line['count'] for line in lines)} outcomes for {result['trials']} trials")
+def fits(result, word, ask, lines):
+    """That numbers of a result are those that were asked for, and of its outcomes."""
+    measure, rule = ask.get("measure") or ask["first"], result["method"]
+    low, high = measure.get("range", (None, None))
+    for name, value in {"theta": ask.get("threshold"), "level": measure.get("level"), "low": low, "high": high}.items():
+        if name in rule and value is not None:
+            near(value, rule[name], f"`{name}`")
     if word == "compare":
-        return
-    lost = sum(len(line["unresolved"]) for line in lines)
-    held = [sum(t for k, t in enumerate(line["truths"]) if k not in line["unresolved"]) for line in lines]
-    found = (lost, sum(held), sum(len(line["truths"]) for line in lines) - sum(held) - lost if lines[0]["truths"] else 0)
-    if found != (result["unresolved"], result["successes"], result["failures"]):
-        raise Refused(f"of the outcomes {found[1]} hold, {found[2]} fail, {found[0]} are unresolved")
-    if sum(held) and not lost and result["method"]["name"] not in ("gbas", "splitting"):
-        near(result["estimate"], held[0] / lines[0]["count"], "the estimate", 1e-9)
+        counted(result["first"], lines[:1])
+        counted(result["second"], lines[1:])
+    scores = lines[:: 1 + len(ask.get("beside", []))] if word == "rank" else lines
+    for option in result.get("options", []):
+        counted(option, [line for line in scores if line["option"] == option["option"]], ask["models"] == 1)
+    counted(result, scores, word in ("check", "estimate") and rule["name"] != "gbas" and "splitting" not in result)
 
 
-def verified(entry, lines):
-    """Checks a result; whether its rule is one of those that are checked here."""
+def verified(entry, lines, runs=()):
+    """Checks a result; returns a remark."""
     result, claim, queries = entry["result"], entry["claim"], entry["queries"]
-    (word, kind, ask), name = asked(queries[0]), result["method"]["name"]
-    if len(queries) != 1:
-        known = word == "check" and kind == "probability" and name in TESTS
-        if known:
-            under_every(result, queries, claim, lines)
-        return known
+    ((word, ask),) = queries[0]["ask"].items()
     if len(queries) == 1:
-        counted(result, word, lines)
+        fits(result, word, ask, lines)
+    if "splitting" in result:
+        return splitting(result, queries, claim, lines, runs)
     chosen = next((ask[role]["values"] for role in ("test", "estimator", "ranking") if role in ask), [])
     numbers = [x for x in result["method"].values() if not isinstance(x, str)]
-    if not all(any(abs(x - y) <= 1e-9 * max(abs(x), 1) for y in numbers) for x in chosen):
-        raise Refused(f"the rule has the numbers {numbers}, and {chosen} were asked for")
-    if word == "check" and kind == "probability" and name in TESTS:
-        check(result, ask, claim, lines[0])
-    elif word == "check" and kind == "mean":
-        check_mean(result, ask, claim, lines[0])
-    elif word == "estimate" and kind == "probability" and name in ESTIMATES:
-        estimate(result, ask, claim, lines[0])
-    elif word == "estimate" and kind == "mean":
-        expectation(result, ask, claim, lines[0])
-    elif word == "estimate" and kind == "curve" and not ask["estimate"]["falls"]:
-        curve(result, ask, claim, lines[0])
-    elif word == "rank" and name == "okamoto" and kind == "probability" and not ask["beside"]:
-        rank_fixed(result, ask, claim, lines)
-    elif word == "estimate" and kind == "quantile":
-        quantile(result, ask, claim, lines[0])
-    elif word == "rank" and name in ("betting", "one_challenger") and kind in ("probability", "mean") and not ask["beside"] and ask["models"] == 1:
-        rank(result, ask, claim, lines)
-    elif word == "compare" and kind in ("probability", "mean"):
-        compare(result, ask, claim, *lines)
-    else:
-        return False
-    return True
+    is_known = lambda x: any(abs(x - y) <= 1e-9 * max(abs(x), 1) for y in numbers)
+    require(all(map(is_known, chosen)), f"the rule has the numbers {numbers}, and {chosen} were asked for")
+    if word != "rank" or claim:
+        {"check": checks, "estimate": estimate, "compare": compare, "rank": rank}[word](result, queries, claim, lines)
+    return ""
 
 
 def read(path):
+    """The head of a certificate, and its results with their outcomes and runs of splitting."""
     with open(path, "rb") as file:
         data = file.read()
     *lines, last = data.splitlines(keepends=True) or [b""]
@@ -670,39 +457,65 @@ def read(path):
         raise Unreadable("the last line has no digest: the file is cut short, or is no certificate") from None
     if told != "sha256:" + hashlib.sha256(b"".join(lines)).hexdigest():
         raise Unreadable("the digest does not match: the file was changed")
-    parsed = [json.loads(line) for line in lines]
-    if not parsed or parsed[0].get("smc") != FORMAT:
+    head, *parsed = [json.loads(line) for line in lines] or [{}]
+    if head.get("smc") != FORMAT:
         raise Unreadable(f"this is not `{FORMAT}`")
-    return parsed
+    entries = []
+    for line in parsed:
+        if "result" in line:
+            entries.append(({name: line[name] for name in ("result", "claim", "queries")}, [], []))
+        elif "count" in line:
+            entries[-1][1].append(line)
+        else:
+            entries[-1][2].extend(line["runs_of_splitting"])
+    return head, entries
 
 
-def main(path):
+def main(path, *files, **options):
     try:
-        head, *lines = read(path)
-    except (OSError, ValueError, Unreadable) as error:
+        head, entries = read(path)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, Unreadable) as error:
         print(f"{path}: {error}", file=sys.stderr)
         return 2
     print(f"{head['scenario']}, seed {head['seed']}, version {head['version']}")
     for file, digest in head["inputs"]:
         print(f"  {file} {digest}")
-    refused = unknown = 0
-    at = 0
-    while at < len(lines):
-        entry, own = lines[at], []
-        at += 1
-        while at < len(lines) and "result" not in lines[at]:
-            own.append(lines[at])
-            at += 1
-        result = entry["result"]
+    words = []
+    for entry, lines, runs in entries:
+        result, claim = entry["result"], entry["claim"]
         try:
-            known = verified(entry, [unpacked(line) for line in own if "count" in line])
-            word = "right" if known else f"not checked: {result['method']['name']}"
-            unknown += not known
-        except (Refused, Unreadable, KeyError, ValueError, IndexError, TypeError, ZeroDivisionError) as error:
-            word, refused = f"refused: {error}" if isinstance(error, (Refused, Unreadable)) else f"refused: {error!r}", refused + 1
-        print(f"{word:<12} {result['query']}: {result['certifies'] or 'nothing'}")
-    return 1 if refused else 3 if unknown else 0
+            words.append("right")
+            lines[:] = map(unpacked, lines)
+            said = verified(entry, lines, runs)
+        except Unchecked as error:
+            words[-1:], said = ["not checked"], f": {error}"
+        except (Refused, Unreadable, KeyError, ValueError, IndexError, TypeError, ArithmeticError, AttributeError, StopIteration) as error:
+            words[-1:], said = ["refused"], f": {error}" if isinstance(error, (Refused, Unreadable)) else f": {error!r}"
+        told = json.dumps(claim and claim["claim"], ensure_ascii=False).translate(str.maketrans("", "", '{}"'))
+        print(f"{words[-1] + said:<12} {result['query']}: {told + ', error at most %g' % claim['error'] if claim else 'nothing'}")
+    code = 1 if "refused" in words else 3 if "not checked" in words else 0
+    if options.get("program"):
+        import audit
+
+        code = audit.audited(head, entries, files, options) or code
+    return code
+
+
+def called():
+    """The words of the command line."""
+    words = argparse.ArgumentParser(description="Checks a certificate of smc.")
+    words.add_argument("certificate")
+    words.add_argument("files", nargs="*", help="the scenario and the property files, for an audit")
+    words.add_argument("--program", help="the program that runs trials again")
+    words.add_argument("--audit", type=int, default=300, help="how many outcomes are run again")
+    words.add_argument("--audit-seed", type=int, dest="seed")
+    words.add_argument("--data", action="append", default=[], help="a folder of recordings, for the program")
+    told = words.parse_intermixed_args()
+    if bool(told.program) != bool(told.files):
+        words.error("an audit needs the scenario, and `--program`")
+    extra = [part for folder in told.data for part in ("--data", folder)]
+    return main(told.certificate, *told.files, program=told.program, audit=told.audit, seed=told.seed, extra=extra)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(called())

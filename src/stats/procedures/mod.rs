@@ -97,7 +97,8 @@ pub const PROCEDURES: &[&Spec] = &[
 ];
 
 /// Those that are taken where a query names none.
-pub const UNNAMED: &[&Spec] = &[&PROBABILITY_WITHIN, &MEAN_RUNNING, &MEAN_WITHIN, &TAIL_WITHIN];
+pub const UNNAMED: &[&Spec] =
+    &[&PROBABILITY_WITHIN, &MEAN_RUNNING, &MEAN_WITHIN, &TAIL_RUNNING, &TAIL_WITHIN];
 
 /// The procedure as queries name it.
 pub const SPRT: Spec = Spec {
