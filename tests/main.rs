@@ -25,6 +25,7 @@ mod drift;
 mod drive;
 mod drivers;
 mod dynamics;
+mod editor;
 mod every;
 mod expressions;
 mod floors;

@@ -61,7 +61,7 @@ fn mistakes(text: &str) -> Vec<Mistake<'_>> {
 /// What `smc` says about a mistake.
 fn said(case: &Mistake<'_>) -> String {
     let directory = tempfile::tempdir().unwrap();
-    let properties = if case.properties.is_empty() { "let unused = 1\n" } else { &case.properties };
+    let properties = if case.properties.is_empty() { NOTHING } else { &case.properties };
     std::fs::write(directory.path().join("model.scn"), format!("{}{}", case.scenario, case.base)).unwrap();
     std::fs::write(directory.path().join("prop.bltl"), properties).unwrap();
     let plain = "check model.scn prop.bltl --quiet --max-trials 2";
@@ -97,19 +97,33 @@ fn parts(said: &str) -> (String, String, String) {
     (cause, places, remedy)
 }
 
+/// Stands in the place of a property file that a case does not need.
+const NOTHING: &str = "let unused = 1\n";
+
+/// All files of mistakes.
+const FILES: [&str; 7] = [
+    include_str!("mistakes/logic.case"),
+    include_str!("mistakes/newcomers.case"),
+    include_str!("mistakes/prism.case"),
+    include_str!("mistakes/python.case"),
+    include_str!("mistakes/slips.case"),
+    include_str!("mistakes/tools.case"),
+    include_str!("mistakes/uppaal.case"),
+];
+
+/// The scenario and the property file of each mistake in files, for other ways to show errors.
+pub(crate) fn every_mistake() -> Vec<(String, String)> {
+    let cases = FILES.iter().flat_map(|text| mistakes(text)).filter(|case| case.call.is_empty());
+    let properties = |case: &Mistake<'_>| {
+        if case.properties.is_empty() { NOTHING.to_owned() } else { case.properties.clone() }
+    };
+    cases.map(|case| (format!("{}{}", case.scenario, case.base), properties(&case))).collect()
+}
+
 #[test]
 fn a_message_names_place_cause_and_remedy() {
-    let files = [
-        include_str!("mistakes/logic.case"),
-        include_str!("mistakes/newcomers.case"),
-        include_str!("mistakes/prism.case"),
-        include_str!("mistakes/python.case"),
-        include_str!("mistakes/slips.case"),
-        include_str!("mistakes/tools.case"),
-        include_str!("mistakes/uppaal.case"),
-    ];
     let (mut points, mut count, mut poor) = (0_u32, 0_u32, String::new());
-    for case in files.iter().flat_map(|text| mistakes(text)) {
+    for case in FILES.iter().flat_map(|text| mistakes(text)) {
         let said = said(&case);
         let errors = said.lines().filter(|line| line.starts_with("error")).count();
         assert_eq!(errors, 1, "{}\n{said}", case.name);

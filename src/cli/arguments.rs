@@ -81,6 +81,8 @@ pub(super) enum Verb {
     Fmt(Format),
     /// Explain a code of an error or warning, such as E0303, a procedure or a function.
     Explain(Explain),
+    /// Serve an editor: errors while typing, names, formats, and verdicts in the margin.
+    Lsp,
     /// Write completions for a shell to standard output.
     Completions(Completions),
     /// Write man pages into a directory.
@@ -94,7 +96,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Recordings", &["infer", "measure", "monitor", "evaluate", "calibrate", "fit", "advise", "drift"]),
     ("Gait", &["gait"]),
     ("Large runs", &["shard", "merge"]),
-    ("Files", &["fmt", "explain"]),
+    ("Files", &["fmt", "explain", "lsp"]),
     ("Shell", &["completions", "man"]),
 ];
 

@@ -9,6 +9,9 @@ use crate::library::program::Programs;
 use crate::library::{self, Folder, Inputs, Names, Parsed, load as compile, parse as read_all};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::parse::parse_properties;
+use crate::syntax::source::{Source, SourceId};
+use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -143,8 +146,42 @@ pub(super) fn matching(folder: &Path, pattern: &str) -> Vec<String> {
     found
 }
 
+/// The folders in a folder, in order.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn folders(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    found.sort();
+    found
+}
+
+/// The scenario that the first line of a property file names: `for "corridor.scn"`.
+pub(super) fn written_for(text: &str) -> Option<String> {
+    let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with("//"))?;
+    let is_it = first.strip_prefix("for").is_some_and(|rest| rest.trim_start().starts_with('"'));
+    let file = || parse_properties(&Source::new(SourceId(0), "", first)).0;
+    if is_it { file().scenario().map(|path| path.value.clone()) } else { None }
+}
+
+/// The words of a call with the scenario that the first property file names, if no scenario is among them.
+pub(super) fn with_scenario(mut call: Vec<OsString>) -> Vec<OsString> {
+    let is = |word: &OsString, ending: &str| Path::new(word).extension().is_some_and(|end| end == ending);
+    let takes_one = call.get(1).is_some_and(|verb| ["check", "show", "shard"].iter().any(|one| verb == one));
+    let has_one = call.iter().any(|word| is(word, "scn") || word == "-" || word == "--outcomes");
+    let Some(at) = call.iter().position(|word| is(word, "bltl")).filter(|_| takes_one && !has_one) else {
+        return call;
+    };
+    let file = Path::new(&call[at]);
+    let text = file.to_str().and_then(|name| read(name).ok()).and_then(|bytes| String::from_utf8(bytes).ok());
+    if let Some(named) = text.as_deref().and_then(written_for) {
+        let scenario = file.parent().unwrap_or(Path::new("")).join(named);
+        call.insert(at, scenario.into_os_string());
+    }
+    call
+}
+
 /// Looks for a file beside the scenario, then under each data directory.
-fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String> {
+pub(super) fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String> {
     let beside = if scenario == "-" { None } else { Path::new(scenario).parent() };
     let mut places: Vec<PathBuf> = beside.into_iter().map(Path::to_path_buf).collect();
     places.extend(data.iter().cloned());

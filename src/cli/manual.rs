@@ -8,6 +8,7 @@ use crate::model::BuiltIn;
 use crate::stats::PROCEDURES;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::keywords;
 
 /// Completions of a shell, to standard output.
 pub(super) fn completions(arguments: &Completions) -> Result<(), Diagnostic> {
@@ -58,7 +59,7 @@ pub(super) fn explain(arguments: &Explain) -> Result<(), Diagnostic> {
 }
 
 /// What the manual says of a function: its row in the table of functions, or the paragraph in which it stands.
-fn function(built_in: &BuiltIn) -> Option<String> {
+pub(super) fn function(built_in: &BuiltIn) -> Option<String> {
     let manual = MANUAL;
     let (call, name) = (format!("`{}(", built_in.name), format!("`{}`", built_in.name));
     // A table has a column of units, or none.
@@ -82,4 +83,35 @@ fn function(built_in: &BuiltIn) -> Option<String> {
         Some(format!("{}\n\n{found}\n", built_in.name))
     };
     row(true).or_else(|| row(false)).or_else(paragraph)
+}
+
+/// Pages with tables of keywords.
+const PAGES: [&str; 4] = [
+    include_str!("../../docs/scenario.md"),
+    include_str!("../../docs/queries.md"),
+    include_str!("../../docs/processes.md"),
+    include_str!("../../docs/buildings.md"),
+];
+
+/// What the manual says of a word: the first row of a table that begins with it, or the paragraph below its heading.
+pub(super) fn keyword(word: &str) -> Option<String> {
+    let begins = |text: &str| text.strip_prefix(word).is_some_and(|rest| rest.starts_with([' ', '`', '(']));
+    let mut rows = PAGES.iter().flat_map(|page| page.lines()).filter_map(|line| line.strip_prefix("| `"));
+    if let Some((code, said)) = rows.find(|row| begins(row)).and_then(|row| row.split_once('`')) {
+        return Some(format!("`{code}`{}", said.trim_end_matches(" |").replacen(" | ", ": ", 1)));
+    }
+    let mut paragraphs = PAGES.iter().flat_map(|page| page.split("\n\n"));
+    let about = |text: &str| text.trim_start_matches('#').trim().trim_matches('`').eq_ignore_ascii_case(word);
+    let is_heading = |text: &&str| text.starts_with('#') && about(text);
+    if !keywords::is_marked(word) {
+        return None;
+    }
+    let below = paragraphs.clone().skip_while(|text| !is_heading(text)).nth(1);
+    let first = || {
+        paragraphs.find(|text| {
+            !text.starts_with(['|', '#', '`'])
+                && text.split('`').skip(1).step_by(2).any(|code| begins(&format!("{code} ")))
+        })
+    };
+    below.or_else(first).map(str::to_owned)
 }

@@ -2,6 +2,7 @@
 
 use super::arguments::{Arguments, definition};
 use super::complaint;
+use super::inputs::with_scenario;
 use super::terminal::Colors;
 use super::values::{Destination, parse_count};
 use super::{check, drift};
@@ -16,6 +17,7 @@ use std::num::{ParseFloatError, ParseIntError};
 
 /// Reads the call. An error is a request for help, or is told in full.
 pub(super) fn parse(call: Vec<OsString>) -> Result<Arguments, clap::Error> {
+    let call = with_scenario(call);
     let words: Vec<String> = call.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
     let strange = call.iter().find(|word| word.to_str().is_none()).cloned();
     let found = ruled(definition()).try_get_matches_from_mut(call);

@@ -12,6 +12,7 @@ mod gait;
 mod infer;
 mod inputs;
 mod launch;
+mod lsp;
 mod manual;
 mod measure;
 mod merge;
@@ -34,6 +35,7 @@ mod verify;
 mod walk;
 
 use crate::engine::outcome::Failure;
+use crate::library::STACK;
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use arguments::Verb;
@@ -41,9 +43,6 @@ use check::Way;
 use std::ffi::OsString;
 use std::process;
 use terminal::{Colors, say};
-
-/// Stack of the thread that does the work: deep formulas are walked recursively, up to a limit.
-const STACK: usize = 256 << 20;
 
 /// Runs the program.
 pub fn run() -> process::ExitCode {
@@ -136,6 +135,7 @@ fn dispatch(verb: &Verb, colors: Colors) -> Exit {
         Verb::Merge(command) => check::run(&command.questions, &Way::Merge(&command.folder), colors),
         Verb::Fmt(command) => format::run(command, colors),
         Verb::Explain(command) => ended(manual::explain(command)),
+        Verb::Lsp => ended(lsp::run()),
         Verb::Completions(command) => ended(manual::completions(command)),
         Verb::Man(command) => ended(manual::pages(command)),
     }

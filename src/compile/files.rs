@@ -1,6 +1,7 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
 use crate::compile::context::sighting::{Grouping, Seen, Site};
+use crate::compile::drawings::Drawings;
 use crate::compile::people::intended::{beside, destinations};
 use crate::data::tracks::{Format, LineError, Reading, Recording, Velocity};
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, GroupDecl, Item, ScenarioFile, SceneItem, Text, Value};
@@ -114,6 +115,10 @@ pub struct Files {
     /// The columns beside the positions of the recording that is shown, which `column(a, NAME)` reads; `None` where trials
     /// are simulated.
     pub columns: Option<Vec<String>>,
+    /// Whether it is noted what each name stands for, as an editor shows it.
+    pub noting: bool,
+    /// The drawings that were read before, where somebody reads the same ones again and again.
+    pub drawings: Option<Drawings>,
 }
 
 impl Files {

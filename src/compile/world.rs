@@ -8,6 +8,7 @@ use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     clock::{self, Told},
     entry, moments,
+    notes::Notes,
     number::Number,
     people::{People, keep_starts},
     processes::Declared,
@@ -45,6 +46,7 @@ pub(crate) fn elaborate<'a>(
 ) -> (Context<'a>, Option<Scenario>) {
     let mut context = Context::new(sources, settings);
     context.time.measured = measured.to_vec();
+    context.notes = files.noting.then(Notes::new);
     declare(&mut context, scenario);
     declare_properties(&mut context, properties);
     let broken = scenario.broken.iter().chain(properties.iter().flat_map(|file| &file.broken));
@@ -117,7 +119,7 @@ fn declare_properties<'a>(context: &mut Context<'a>, files: &'a [PropertyFile]) 
                 PropertyItem::Let(decl) => (&decl.name, Meaning::Let(decl)),
                 PropertyItem::Const { name, value } => (name, Meaning::Constant(value)),
                 PropertyItem::Property { name, formula } => (name, Meaning::Property(formula)),
-                PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
+                PropertyItem::For(_) | PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
             };
             if let Some(first) = context.names.scopes[0].get(&name.name) {
                 let error = error!(E0202, name.span, "`{}` is already a name of the scenario", name.name)

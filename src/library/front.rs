@@ -6,7 +6,7 @@ use super::refusal::refusal;
 use crate::advise::groups;
 use crate::base::digest::Digest;
 use crate::compile::{
-    Files, Input, Request, Setting, Starts, Study, examine, is_series, own_errors, requests,
+    Files, Input, Notes, Request, Setting, Starts, Study, examine, is_series, own_errors, requests,
 };
 use crate::data::tracks::Velocity;
 use crate::engine::overfull_starts;
@@ -24,6 +24,9 @@ use std::collections::BTreeMap;
 /// Code of a parameter that is set wrongly.
 const SETTING: Code = Code::E0210;
 
+/// Stack of a thread that compiles texts of strangers, bytes: deep formulas are walked recursively, up to a limit.
+pub const STACK: usize = 256 << 20;
+
 /// Most errors of one code that are shown.
 const MOST_OF_A_KIND: usize = 100;
 
@@ -40,6 +43,11 @@ pub trait Folder {
     /// # Errors
     /// A sentence that says why there are none.
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String>;
+
+    /// The digest of the bytes of such a file.
+    fn print(&mut self, _path: &str, bytes: &[u8]) -> Digest {
+        Digest::of(bytes)
+    }
 
     /// The paths of all files that a path with `*` in its last part stands for, in order; none where there are none.
     fn matching(&mut self, _pattern: &str) -> Vec<String> {
@@ -86,6 +94,8 @@ pub struct Inputs {
     pub study: Option<Study>,
     /// How often the model was right about recorded people, where a file says so.
     pub calibration: Option<Calibration>,
+    /// What names stand for, if the files say that it is noted.
+    pub notes: Notes,
 }
 
 /// What a call names, read and parsed but not compiled.
@@ -185,7 +195,8 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
     for request in asked {
         let contents = reader.folder.file(&request.path);
         if let Ok(bytes) = &contents {
-            reader.inputs.prints.push((request.path.clone(), Digest::of(bytes)));
+            let print = reader.folder.print(&request.path, bytes);
+            reader.inputs.prints.push((request.path.clone(), print));
             // Here and not where steps are drawn: every command reads its files here.
             if request.is_gait
                 && let Err(error) = LearnedGait::read(bytes)
@@ -203,13 +214,18 @@ pub fn parse(names: Names<'_>, folder: &mut dyn Folder) -> Parsed {
 pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
     let parsed = parse(names, folder);
     let last = names.properties.last().map(|name| folder.shown(name).to_owned());
+    conclude(parsed, last.as_deref())
+}
+
+/// Compiles what was parsed. A warning says it if there is no query, at the last property file of the call.
+pub fn conclude(parsed: Parsed, last: Option<&str>) -> Inputs {
     let compiled =
         parsed.complete.then(|| examined(&parsed.input(), &parsed.inputs.diagnostics, parsed.in_files));
     let formulas = written(&parsed.properties, &parsed.inputs.sources);
     let mut inputs = parsed.inputs;
-    if let Some((study, found)) = compiled {
+    if let Some((study, found, notes)) = compiled {
         inputs.diagnostics.extend(found);
-        inputs.study = study;
+        (inputs.study, inputs.notes) = (study, notes);
     }
     if let (Some(calibration), Some(study)) = (&inputs.calibration, &inputs.study) {
         inputs.diagnostics.extend(calibration.fits(study, &formulas).err());
@@ -221,9 +237,9 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
         let title = "internal error: compilation failed without a diagnostic";
         inputs.diagnostics.push(Diagnostic::placeless(Code::E0305, title));
     }
-    if let (Some(study), Some(last)) = (&inputs.study, &last)
+    if let (Some(study), Some(last)) = (&inputs.study, last)
         && study.queries.is_empty()
-        && let Some(source) = inputs.sources.iter().rfind(|source| source.name == *last)
+        && let Some(source) = inputs.sources.iter().rfind(|source| source.name == last)
     {
         let warning = Diagnostic::warning(
             Code::W0602,
@@ -239,7 +255,7 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
 }
 
 /// What compilation yields, and what is wrong beside what the parser said.
-fn examined(input: &Input<'_>, said: &[Diagnostic], files: usize) -> (Option<Study>, Vec<Diagnostic>) {
+fn examined(input: &Input<'_>, said: &[Diagnostic], files: usize) -> (Option<Study>, Vec<Diagnostic>, Notes) {
     let examined = examine(input);
     let is_any = is_any_world(&examined.found, said, input, files);
     let mut found = own_errors(examined.found, said, input);
@@ -248,7 +264,7 @@ fn examined(input: &Input<'_>, said: &[Diagnostic], files: usize) -> (Option<Stu
         let known: Vec<Diagnostic> = said.iter().chain(&found).cloned().collect();
         found.extend(own_errors(crowded(&examined.starts, &known), said, input));
     }
-    (examined.study, found)
+    (examined.study, found, examined.notes)
 }
 
 struct Reader<'f> {

@@ -22,7 +22,7 @@ mod ways;
 
 pub use diagnostics::{Diagnostics, findings};
 pub use episode::{Episode, Stage};
-pub use front::{Folder, Inputs, Names, Parsed, load, parse};
+pub use front::{Folder, Inputs, Names, Parsed, STACK, conclude, load, parse};
 pub use model::{Draft, Model};
 pub use options::{Options, chosen};
 pub use paths::find_paths;

@@ -25,6 +25,17 @@ pub fn render(run: &CallResult, palette: Palette) -> String {
     text
 }
 
+/// The verdicts of a run in one line, without what was asked: an editor shows it beside the query.
+pub fn beside(run: &CallResult) -> String {
+    let said = |result: &QueryResult| {
+        let cells = row(result);
+        let told = cells.iter().enumerate().filter(|(at, cell)| *at != 1 && !cell.text().is_empty());
+        told.map(|(_, cell)| cell.text().trim().to_owned()).collect::<Vec<_>>().join(", ")
+    };
+    let failure = run.failure.iter().map(|failure| format!("stopped: {}", failure.message()));
+    run.results.iter().map(said).chain(failure).collect::<Vec<_>>().join(" · ")
+}
+
 fn row(result: &QueryResult) -> Vec<Cell> {
     let (word, paint) = word(result);
     let query = one_line(&result.asked.text);

@@ -95,6 +95,8 @@ pub struct Diagnostic {
     pub about: About,
     /// The declaration of a number without a unit that causes it.
     pub comes_of: Option<Span>,
+    /// The names that are known at its place, where it is about an unknown one: an editor offers them.
+    pub known: Vec<String>,
 }
 
 impl Diagnostic {
@@ -121,6 +123,7 @@ impl Diagnostic {
             is_formal: false,
             about: About::Other,
             comes_of: None,
+            known: Vec::new(),
         }
     }
 
@@ -128,6 +131,13 @@ impl Diagnostic {
     #[must_use]
     pub fn hanging_on(mut self, value: Span) -> Self {
         self.hangs_on.push(value);
+        self
+    }
+
+    /// Says which names are known at its place.
+    #[must_use]
+    pub fn knowing<'n>(mut self, names: impl IntoIterator<Item = &'n str>) -> Self {
+        self.known = names.into_iter().map(str::to_owned).collect();
         self
     }
 

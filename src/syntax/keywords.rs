@@ -160,7 +160,7 @@ pub const KEYWORDS: [Keyword; 89] = [
 /// Words that are operators in property files, and no names.
 pub const OPERATORS: [&str; 8] = ["forall", "exists", "F", "G", "X", "U", "W", "R"];
 /// The measures of queries, the folds over windows and sets, and the truth values.
-const OTHERS: [&str; 10] = ["P", "E", "Q", "CVaR", "min", "max", "sum", "mean", "true", "false"];
+pub const OTHERS: [&str; 10] = ["P", "E", "Q", "CVaR", "min", "max", "sum", "mean", "true", "false"];
 
 /// Whether a word is a measure of a query.
 pub fn is_measure(word: &str) -> bool {

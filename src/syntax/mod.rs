@@ -6,6 +6,7 @@ pub mod diagnostic;
 pub mod ast;
 pub mod codes;
 pub mod keywords;
+pub mod names;
 pub mod parse;
 pub mod print;
 pub mod render;

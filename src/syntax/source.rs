@@ -88,6 +88,11 @@ impl Source {
         self.line_starts[self.line(byte) - 1]
     }
 
+    /// The first byte of a line, which counts from 1; the end of the text for a line behind the last one.
+    pub fn start_of_line(&self, line: usize) -> u32 {
+        self.line_starts.get(line.max(1) - 1).copied().unwrap_or(self.text.len() as u32)
+    }
+
     /// The end of the line of a byte, before its line break.
     pub fn line_end(&self, byte: u32) -> u32 {
         self.line_starts.get(self.line(byte)).map_or(self.text.len() as u32, |next| next - 1)
@@ -98,6 +103,11 @@ impl Source {
         let start = self.line_start(byte) as usize;
         let column = self.characters_before(byte as usize) - self.characters_before(start);
         (self.line(byte), column + 1)
+    }
+
+    /// The text of a span in one line.
+    pub fn in_one_line(&self, span: Span) -> String {
+        self.slice(span).split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
     /// The text of a span.

@@ -11,6 +11,7 @@ pub(crate) mod levels;
 pub(crate) mod lowered;
 pub(crate) mod moments;
 pub(crate) mod names;
+pub(crate) mod notes;
 pub(crate) mod number;
 pub(crate) mod observed;
 pub(crate) mod parts;
@@ -36,6 +37,7 @@ use crate::compile::context::{
     kind::Kind,
     levels::Levels,
     names::Names,
+    notes::Notes,
     number::Number,
     observed::{Margins, Observed},
     parts::Origins,
@@ -99,6 +101,8 @@ pub(crate) struct Context<'a> {
     pub(crate) margins: Option<Margins>,
     /// Parts of the files that could not be read.
     pub(crate) torn: Vec<&'a Broken>,
+    /// What each name stands for, where somebody wants to know.
+    pub(crate) notes: Option<Notes>,
 }
 
 impl<'a> Context<'a> {
@@ -126,6 +130,7 @@ impl<'a> Context<'a> {
             extent: Extent::default(),
             margins: None,
             torn: Vec::new(),
+            notes: None,
         }
     }
 

@@ -205,8 +205,9 @@ pub(crate) fn unknown<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
     let error = Diagnostic::error(code, span, format!("unknown {what} `{name}`"));
-    let error = error.about(About::Name(name.to_owned()));
-    match meant(name, &known.collect::<Vec<_>>()) {
+    let known: Vec<&str> = known.collect();
+    let error = error.about(About::Name(name.to_owned())).knowing(known.iter().copied());
+    match meant(name, &known) {
         Some(near) => error.hint(format!("did you mean `{near}`?")),
         None => error,
     }

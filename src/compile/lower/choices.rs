@@ -39,7 +39,7 @@ pub(crate) fn place(
         return Ok(Number::whole(at as i64));
     }
     let list: Vec<String> = names().map(|known| format!("`{known}`")).collect();
-    let error = error!(E0213, value.span, "`{name}` is one of {}", list.join(", ")).formal();
+    let error = error!(E0213, value.span, "`{name}` is one of {}", list.join(", ")).formal().knowing(names());
     context.report(match chosen.and_then(|chosen| nearest(chosen, names())) {
         Some(near) => error.hint(format!("did you mean `{near}`?")),
         None => error,

@@ -36,7 +36,7 @@ pub(crate) mod weight;
 
 use crate::base::tick::Tick;
 use crate::compile::context::{
-    Context, Locals, Lowered, Reported,
+    Context, Locals, Lowered, Reported, notes,
     number::Number,
     parts::{Form, Part},
     phrase,
@@ -66,6 +66,14 @@ impl Context<'_> {
         };
         self.words.frame = around;
         self.extent.depth -= 1;
+        if let (Some(notes), Ok(typed)) = (&mut self.notes, &lowered) {
+            let is_named =
+                matches!(expr.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Call { .. });
+            // A declaration is lowered by its name at the place of its value.
+            if is_named {
+                notes.insert(expr.span, notes::described(typed));
+            }
+        }
         lowered
     }
 

@@ -66,7 +66,7 @@ pub(crate) fn arguments<'m>(
                 E0604,
                 argument.name.span, "`{}` has no argument `{}`", method.name.name, argument.name.name
             );
-            context.note(error.formal().hint(hint));
+            context.note(error.formal().hint(hint).knowing(names.iter().copied()));
             let _ = context.number(&argument.value, locals);
             failed = true;
             continue;

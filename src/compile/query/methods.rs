@@ -113,7 +113,7 @@ pub(crate) fn procedure(
         || format!("the procedures are {}", known.join(", ")),
         |n| format!("did you mean `{n}`?"),
     );
-    context.report(error.hint(hint))
+    context.report(error.hint(hint).knowing(known))
 }
 
 /// That a check states no width.

@@ -22,7 +22,8 @@ pub(crate) mod watched;
 
 use crate::base::decimal::Decimal;
 use crate::compile::context::{
-    Context, Locals, Lowered, Reported, number::Number, roster::Starts, symbols::ScopeId, wording::Texts,
+    Context, Locals, Lowered, Reported, notes::Notes, number::Number, roster::Starts, symbols::ScopeId,
+    wording::Texts,
 };
 use crate::compile::lower::{call, name, traffic};
 use crate::compile::people::kinds;
@@ -49,6 +50,8 @@ pub struct Examined {
     pub found: Vec<Diagnostic>,
     /// The starts of agents in the worlds that are certainly used.
     pub starts: Vec<Starts>,
+    /// What names stand for, in the world of the call, where the files say that it is noted.
+    pub notes: Notes,
 }
 
 /// Compiles a scenario and property files. All errors are returned at once; a study only where there is none, and where
@@ -89,8 +92,11 @@ pub fn examine(input: &Input<'_>) -> Examined {
         }
         if !more {
             let starts = starts::starts(&compiler);
+            // The worlds of queries know of names that the world of the call has not looked at.
+            let noted = compiler.sites.iter_mut().rev().filter_map(|site| site.context.notes.take());
+            let notes = noted.flatten().collect();
             let (study, found) = compiler.conclude();
-            return Examined { study, found, starts };
+            return Examined { study, found, starts, notes };
         }
     }
 }
@@ -157,7 +163,7 @@ impl<'a> Compiler<'a> {
                         call::look_into(context, decl, &Locals::of(number + 1));
                         context.temporal = false;
                     }
-                    PropertyItem::Family { .. } | PropertyItem::Query(_) => {}
+                    PropertyItem::For(_) | PropertyItem::Family { .. } | PropertyItem::Query(_) => {}
                 }
             }
         }

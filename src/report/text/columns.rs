@@ -11,6 +11,11 @@ pub(in crate::report) struct Cell {
 }
 
 impl Cell {
+    /// Its text.
+    pub(in crate::report) fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Leans to the left.
     pub(in crate::report) fn left(text: impl Into<String>) -> Self {
         Self { text: text.into(), paint: None, right: false }

@@ -1,6 +1,6 @@
 //! Property files (`.bltl`).
 
-use super::{Binding, Broken, Expr, Ident, LetDecl};
+use super::{Binding, Broken, Expr, Ident, LetDecl, Text};
 use crate::syntax::source::Span;
 
 /// A whole property file.
@@ -17,10 +17,19 @@ pub struct PropertyFile {
     pub is_torn: bool,
 }
 
+impl PropertyFile {
+    /// The scenario that it says it is about.
+    pub fn scenario(&self) -> Option<&Text> {
+        if let Some(PropertyItem::For(path)) = self.items.first() { Some(path) } else { None }
+    }
+}
+
 /// One declaration or query.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "a file has few items")]
 pub enum PropertyItem {
+    /// `for "corridor.scn"`, the first line: the scenario that the file is about, if the call names none.
+    For(Text),
     /// `let gap(a) = …`
     Let(LetDecl),
     /// `const T = 10 s`

@@ -125,6 +125,33 @@ fn parse<T>(
     (Some(built), is_torn, said)
 }
 
+/// The words, numbers, quoted texts and marks of a text, each with its first byte; comments are left out.
+pub fn lexemes(text: &str) -> Vec<(usize, &str)> {
+    layout::tokens(text).iter().map(|token| (token.at, token.text)).collect()
+}
+
+/// The word, number, quoted text or mark at a byte. Behind a word the word counts, not the mark that follows.
+pub fn lexeme_at(source: &Source, byte: u32) -> Option<Span> {
+    let at = byte as usize;
+    let before = layout::tokens(&source.text).into_iter().take_while(|token| token.at <= at);
+    let is_word = |text: &str| text.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+    let mut holding = before.filter(|token| at < token.end() || at == token.end() && is_word(token.text));
+    holding.next().map(|token| Span::new(source.id, token.at, token.end()))
+}
+
+/// The blocks in braces of a text: the bytes of both braces, inner blocks before those around them.
+pub fn blocks(text: &str) -> Vec<(usize, usize)> {
+    let (mut open, mut found) = (Vec::new(), Vec::new());
+    for token in layout::tokens(text) {
+        match token.text {
+            "{" => open.push(token.at),
+            "}" => found.extend(open.pop().map(|start| (start, token.at))),
+            _ => {}
+        }
+    }
+    found
+}
+
 /// The parts of a text that are separated by commas outside brackets.
 pub fn split_values(text: &str) -> Vec<&str> {
     let mut depth = 0i32;

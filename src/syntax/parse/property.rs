@@ -33,6 +33,7 @@ impl Builder<'_> {
                 let name = self.ident(&parts.part(Rule::name)?);
                 Some(PropertyItem::Property { name, formula: self.expr(parts.part(Rule::expr)?) })
             }
+            Rule::written_for => Some(PropertyItem::For(self.quoted(&parts.part(Rule::text)?))),
             Rule::family => {
                 Some(PropertyItem::Family { confidence: self.expr(parts.part(Rule::arith)?), span })
             }

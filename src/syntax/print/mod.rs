@@ -11,9 +11,9 @@ mod writer;
 
 use super::diagnostic::{Diagnostic, Severity};
 use super::parse::grammar::Rule;
-use super::parse::layout::{Layout, tokens};
+use super::parse::layout::{Layout, Token, tokens};
 use super::parse::{parse_properties, parse_scenario};
-use super::source::Source;
+use super::source::{Source, Span};
 
 /// Formats a scenario; its errors if it has any.
 pub fn format_scenario(source: &Source) -> Result<String, Vec<Diagnostic>> {
@@ -23,6 +23,29 @@ pub fn format_scenario(source: &Source) -> Result<String, Vec<Diagnostic>> {
 /// Formats a property file; its errors if it has any.
 pub fn format_properties(source: &Source) -> Result<String, Vec<Diagnostic>> {
     format(source, Rule::line_of_properties, parse_properties(source).1)
+}
+
+/// The lines between two bytes as the formatter has them, and their place, which begins with a line that stays one. None where
+/// the text has errors, or nothing is to be changed.
+pub fn format_lines(source: &Source, formatted: &str, from: u32, to: u32) -> Option<(Span, String)> {
+    let text = &source.text;
+    // The formatter keeps the tokens: a range of lines becomes the lines of the same tokens.
+    let (before, after) = (tokens(text), tokens(formatted));
+    let starts =
+        |text: &str, at: usize| text[..at].rsplit('\n').next().is_some_and(|line| line.trim().is_empty());
+    let line = source.line_start(from) as usize;
+    let mut first = before.partition_point(|token| token.at < line).min(before.len().checked_sub(1)?);
+    while first > 0 && !(starts(text, before[first].at) && starts(formatted, after.get(first)?.at)) {
+        first -= 1;
+    }
+    let last = before.partition_point(|token| token.at < to as usize).checked_sub(1)?;
+    let lines = |text: &str, tokens: &[Token<'_>]| {
+        let (first, last) = (tokens.get(first)?, tokens.get(last)?);
+        Some(text[..first.at].rfind('\n').map_or(0, |at| at + 1)..last.end())
+    };
+    let (old, new) = (lines(text, &before)?, lines(formatted, &after)?);
+    let (is_range, place) = (first <= last, Span::new(source.id, old.start, old.end));
+    (is_range && text[old] != formatted[new.clone()]).then(|| (place, formatted[new].to_owned()))
 }
 
 fn format(source: &Source, rule: Rule, diagnostics: Vec<Diagnostic>) -> Result<String, Vec<Diagnostic>> {

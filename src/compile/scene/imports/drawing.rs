@@ -194,7 +194,13 @@ pub(crate) fn read(
     let is_other = format == Format::GeoJson && !end.to_ascii_lowercase().ends_with("json");
     let formats = |error: Diagnostic| if is_other { error.hint(FORMATS) } else { error };
     let read = match text {
-        Ok(text) => geometry::read(format, &text, unit, select),
+        Ok(text) => {
+            let read = |select: &mut Select<'_>| geometry::read(format, &text, unit, select);
+            match &files.drawings {
+                Some(drawings) => drawings.read((&path.value, unit), select, read),
+                None => read(select),
+            }
+        }
         Err(fault) => return context.report(formats(error!(E0704, span, "{fault}"))),
     };
     read.or_else(|errors| context.report(formats(unreadable(span, &errors))))
