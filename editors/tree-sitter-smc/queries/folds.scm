@@ -1,0 +1,6 @@
+[
+  (block)
+  (group)
+  (arguments)
+  (comment)
+] @fold

@@ -1,0 +1,1 @@
+../../../tree-sitter-smc/queries/highlights.scm
