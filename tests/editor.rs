@@ -220,7 +220,7 @@ fn an_editor_shows_what_the_command_line_says() {
                 let start = &one["range"]["start"];
                 found.insert((
                     name.clone(),
-                    start["line"].as_u64().unwrap() + 1,
+                    [&start["line"], &start["character"]].map(|n| n.as_u64().unwrap() + 1),
                     one["code"].as_str().unwrap().to_owned(),
                 ));
             }
@@ -233,7 +233,11 @@ fn an_editor_shows_what_the_command_line_says() {
             .filter(|one| one["line"].is_u64())
             .map(|one| {
                 let file = one["file"].as_str().unwrap().to_owned();
-                (file, one["line"].as_u64().unwrap(), one["code"].as_str().unwrap().to_owned())
+                (
+                    file,
+                    ["line", "column"].map(|n| one[n].as_u64().unwrap()),
+                    one["code"].as_str().unwrap().to_owned(),
+                )
             })
             .collect();
         if !told.is_empty() {
@@ -263,6 +267,14 @@ fn names_lead_to_their_declarations_and_are_renamed_everywhere() {
     editor.open(&scn, SCENARIO);
     let said = editor.about("hover", (&scn, SCENARIO), "WIDTH)\n", &Value::Null);
     assert!(said["contents"]["value"].as_str().unwrap().contains("a length (m), 3 m"), "{said}");
+    let said = editor.about("hover", (&scn, SCENARIO), "user", &Value::Null);
+    assert!(said["contents"]["value"].as_str().unwrap().contains("speed normal(1.34 m/s"), "{said}");
+    let computed = SCENARIO.replace("WIDTH = 3 m", "WIDTH = HALF + 1.5 m\nconst HALF = 1.5 m");
+    editor.change(&scn, &computed);
+    let asked = json!({ "textDocument": { "uri": scn }, "range": null });
+    let hints = editor.ask("textDocument/inlayHint", asked);
+    assert_eq!((hints.as_array().unwrap().len(), &hints[0]["label"]), (1, &json!("= 3 m")), "{hints}");
+    editor.change(&scn, SCENARIO);
     let found = editor.about("definition", (&bltl, PROPERTIES), "goal)", &Value::Null);
     assert_eq!((&found["uri"], &found["range"]["start"]["line"]), (&json!(scn), &json!(6)));
     let context = json!({ "context": { "includeDeclaration": true } });
@@ -317,6 +329,8 @@ fn completions_are_what_the_place_takes() {
         }
         editor.change(uri, base);
     }
+    let whole = editor.ask("completionItem/resolve", json!({ "label": "distance" }));
+    assert!(whole["documentation"]["value"].as_str().unwrap().starts_with("distance(p, q) (m)"), "{whole}");
     editor.end();
 }
 
@@ -421,6 +435,7 @@ fn a_property_file_finds_its_scenario() {
     assert_eq!(editor.open(&uri, &named), json!([]));
     let errors = editor.change(&uri, &named.replace("user in goal", "user in gaol"));
     assert_eq!(errors[0]["code"], "E0201", "{errors}");
+    assert_eq!(editor.change(&uri, " \n"), json!([]), "errors of a text that is gone are gone");
     let errors = editor.change(&uri, &named.replace("hall.scn", "hill.scn"));
     assert_eq!((&errors[0]["code"], &errors[0]["range"]["start"]["line"]), (&json!("E0701"), &json!(1)));
     // Without a scenario, and without a file, words alone are checked.

@@ -22,6 +22,22 @@ const MOST_LISTED: usize = 16;
 /// How many values of a longer one are shown.
 const FEW_LISTED: usize = 8;
 
+/// The part of the description that is about a name: its line, as `region exit: rect …`, or its lines, as those of an agent.
+pub fn about(study: &Study, name: &str) -> Option<String> {
+    let text = describe(study);
+    let mut lines = text.lines().skip_while(|line| {
+        let words: Vec<&str> = line.split([' ', ':', '[']).filter(|word| !word.is_empty()).take(2).collect();
+        let is_it = words.first() == Some(&name) || words.get(1) == Some(&name) && line.contains(": ");
+        !(is_it && line.starts_with("  "))
+    });
+    let first = lines.next()?;
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let below = lines.take_while(|line| indent(line) > indent(first));
+    Some(
+        std::iter::once(first).chain(below).map(|line| &line[indent(first)..]).collect::<Vec<_>>().join("\n"),
+    )
+}
+
 /// Everything that was understood.
 pub fn describe(study: &Study) -> String {
     let mut out = String::new();

@@ -3,7 +3,7 @@
 use super::desk::{Checked, Desk};
 use super::hover;
 use super::place;
-use crate::compile::dimension;
+use crate::compile::{DISTRIBUTIONS, dimension};
 use crate::model::BuiltIn;
 use crate::syntax::ast::Item;
 use crate::syntax::codes::Code;
@@ -12,8 +12,8 @@ use crate::syntax::keywords::{self, Place};
 use crate::syntax::parse::{lexeme_at, lexemes, parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId, Span};
 use lsp_types::{
-    CompletionItem, CompletionItemKind, CompletionTextEdit, Documentation, InsertTextFormat, MarkupContent,
-    MarkupKind, Position, Range, TextEdit,
+    CompletionItem, CompletionItemKind, CompletionTextEdit, Documentation, MarkupContent, MarkupKind,
+    Position, Range, TextEdit,
 };
 use std::collections::BTreeMap;
 
@@ -49,8 +49,6 @@ pub(super) fn complete(desk: &mut Desk, uri: &str, position: Position) -> Vec<Co
         if is_read {
             let known = desk.with_text(uri, &asked, |checked| known_at(checked, uri, here, range));
             found.extend(known.into_iter().map(|item| (item.label.clone(), item)));
-        }
-        if !found.is_empty() {
             break;
         }
     }
@@ -116,49 +114,43 @@ fn documented(text: String) -> Documentation {
 }
 
 fn keyword(word: &str, range: Range) -> CompletionItem {
+    CompletionItem { kind: Some(CompletionItemKind::KEYWORD), ..plain(word, range) }
+}
+
+fn plain(text: &str, range: Range) -> CompletionItem {
+    CompletionItem { label: text.to_owned(), text_edit: Some(edit(text, range)), ..CompletionItem::default() }
+}
+
+/// A name with its kind, and what is known of it; of words of the language that follows (`resolved`).
+fn item(checked: &Checked, name: &str, range: Range) -> CompletionItem {
+    let Some(at) = checked.names.declared.iter().position(|one| one.name == name) else {
+        let is_call = BuiltIn::find(name).is_some() || DISTRIBUTIONS.contains(&name);
+        let kind = if is_call { CompletionItemKind::FUNCTION } else { CompletionItemKind::PROPERTY };
+        return CompletionItem { kind: Some(kind), ..plain(name, range) };
+    };
+    let one = &checked.names.declared[at];
     CompletionItem {
-        label: word.to_owned(),
-        kind: Some(CompletionItemKind::KEYWORD),
-        documentation: hover::of_language(word).into_iter().next().map(documented),
-        text_edit: Some(edit(word, range)),
-        ..CompletionItem::default()
+        kind: Some(match one.noun {
+            "const" => CompletionItemKind::CONSTANT,
+            "kind" => CompletionItemKind::CLASS,
+            "property" | "label" => CompletionItemKind::EVENT,
+            "region" | "wall" | "obstacle" | "line" | "point" | "door" | "level" | "stairs" => {
+                CompletionItemKind::FIELD
+            }
+            _ if !one.arguments.is_empty() => CompletionItemKind::FUNCTION,
+            _ => CompletionItemKind::VARIABLE,
+        }),
+        detail: Some(one.noun.to_owned()),
+        documentation: Some(documented(hover::declared(checked, at))),
+        ..plain(name, range)
     }
 }
 
-/// A name with its kind, and what is known of it.
-fn item(checked: &Checked, name: &str, range: Range) -> CompletionItem {
-    let own = checked.names.declared.iter().position(|one| one.name == name);
-    let noun = own.map(|at| checked.names.declared[at].noun);
-    let said = match own {
-        Some(at) => Some(hover::declared(checked, at)),
-        None => hover::of_language(name).into_iter().next(),
-    };
-    let is_call = own.is_none() && said.as_ref().is_some_and(|said| said.contains(&format!("{name}(")))
-        || own.is_some_and(|at| !checked.names.declared[at].arguments.is_empty());
-    let snippet = format!("{name}($0)");
-    CompletionItem {
-        label: name.to_owned(),
-        kind: Some(match noun {
-            Some("const") => CompletionItemKind::CONSTANT,
-            Some("kind") => CompletionItemKind::CLASS,
-            Some("property" | "label") => CompletionItemKind::EVENT,
-            Some("region" | "wall" | "obstacle" | "line" | "point" | "door" | "level" | "stairs") => {
-                CompletionItemKind::FIELD
-            }
-            _ if is_call => CompletionItemKind::FUNCTION,
-            Some(_) => CompletionItemKind::VARIABLE,
-            None => CompletionItemKind::PROPERTY,
-        }),
-        detail: noun.map(str::to_owned),
-        documentation: said.map(documented),
-        insert_text_format: Some(if is_call {
-            InsertTextFormat::SNIPPET
-        } else {
-            InsertTextFormat::PLAIN_TEXT
-        }),
-        text_edit: Some(edit(if is_call { &snippet } else { name }, range)),
-        ..CompletionItem::default()
-    }
+/// A completion with what the manual says of it.
+pub(super) fn resolved(mut item: CompletionItem) -> CompletionItem {
+    let said = || hover::of_language(&item.label).into_iter().next().map(documented);
+    item.documentation = item.documentation.take().or_else(said);
+    item
 }
 
 /// The brackets that a line has left open, closed, unless the rest of the line does so.
@@ -196,12 +188,10 @@ fn units(checked: &Checked, end: u32, range: Range) -> Vec<CompletionItem> {
         let detail = dimension::unit(name).map(|unit| dimension::describe(unit.dimension));
         let is_wanted = wanted.is_none() || wanted == detail.as_ref();
         CompletionItem {
-            label: name.to_owned(),
             kind: Some(CompletionItemKind::UNIT),
             detail,
             sort_text: Some(format!("{}{name}", u8::from(!is_wanted))),
-            text_edit: Some(edit(name, range)),
-            ..CompletionItem::default()
+            ..plain(name, range)
         }
     };
     dimension::UNITS.into_iter().map(unit).collect()

@@ -54,7 +54,8 @@ impl Checked {
 /// The texts, and what is known of them.
 #[derive(Default)]
 pub(super) struct Desk {
-    open: BTreeMap<String, Open>,
+    /// The texts in the editor, by their addresses.
+    pub(super) open: BTreeMap<String, Open>,
     /// Folders for recordings and imports.
     pub(super) data: Vec<PathBuf>,
     checked: BTreeMap<String, Arc<Checked>>,
@@ -81,16 +82,6 @@ impl Desk {
         self.checked.retain(|key, checked| key != uri && !checked.uris.iter().any(|own| own == uri));
         let key = self.key(uri);
         self.checked.remove(&key);
-    }
-
-    /// A text that is open.
-    pub(super) fn open(&self, uri: &str) -> Option<&Open> {
-        self.open.get(uri)
-    }
-
-    /// The addresses of all texts that are open.
-    pub(super) fn all_open(&self) -> Vec<String> {
-        self.open.keys().cloned().collect()
     }
 
     /// Whether an address is that of a property file.
@@ -208,7 +199,7 @@ impl Desk {
         let properties = parsed.properties.clone();
         let mut inputs = library::conclude(parsed, None);
         // A file that cannot be read has no source, and those behind it would be taken for others.
-        let uris = if inputs.sources.len() < uris.len() { readable(self, uris) } else { uris };
+        let uris: Vec<String> = uris.into_iter().filter(|uri| self.text(uri).is_ok()).collect();
         let is_missing = self.text(key).is_err();
         if is_missing {
             self.blame_for(&mut inputs, &uris);
@@ -249,11 +240,6 @@ impl Desk {
         }
         self.read.get(&found).ok_or_else(|| format!("`{path}` is not there"))
     }
-}
-
-/// The addresses of texts that can be read.
-fn readable(desk: &Desk, uris: Vec<String>) -> Vec<String> {
-    uris.into_iter().filter(|uri| desk.text(uri).is_ok()).collect()
 }
 
 /// The files of a check.

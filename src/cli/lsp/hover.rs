@@ -4,6 +4,7 @@ use super::desk::Checked;
 use super::place;
 use crate::cli::manual;
 use crate::model::{BuiltIn, Parameter};
+use crate::report::model;
 use crate::stats::PROCEDURES;
 use crate::syntax::codes::Code;
 use crate::syntax::parse::lexeme_at;
@@ -51,6 +52,10 @@ pub(super) fn declared(checked: &Checked, declaration: usize) -> String {
         said += &format!(" = `{}`", crate::base::visible::shortened(source.in_one_line(value)));
         // The value of a declaration is noted under its name, at the place of the value.
         said += &checked.inputs.notes.get(&value).map_or(String::new(), |note| format!("\n\n{note}"));
+    }
+    let about = checked.inputs.study.as_ref().and_then(|study| model::about(study, &one.name));
+    if let Some(about) = about.filter(|_| one.value.is_none() && one.inside.is_none()) {
+        said += &format!("\n\n```text\n{about}\n```");
     }
     said
 }

@@ -43,14 +43,12 @@ pub(super) fn run() -> Result<(), Diagnostic> {
     let mut server = Server::new(editor, &options);
     loop {
         // Errors are shown when the editor has said everything that it has to say.
-        let message = match connection.receiver.try_recv() {
-            Ok(message) => message,
-            Err(_) => {
-                server.publish();
-                let Ok(message) = connection.receiver.recv() else { return Ok(()) };
-                message
-            }
-        };
+        let mut message = connection.receiver.try_recv().ok();
+        if message.is_none() {
+            server.publish();
+            message = connection.receiver.recv().ok();
+        }
+        let Some(message) = message else { return Ok(()) };
         match message {
             Message::Request(request) => {
                 if connection.handle_shutdown(&request).map_err(|error| failed(error.to_string()))? {
@@ -69,7 +67,7 @@ fn capabilities() -> Value {
     json!({
         "textDocumentSync": 1,
         "hoverProvider": true,
-        "completionProvider": { "triggerCharacters": [" ", "(", "."] },
+        "completionProvider": { "triggerCharacters": [" ", "(", "."], "resolveProvider": true },
         "definitionProvider": true,
         "referencesProvider": true,
         "renameProvider": { "prepareProvider": true },
@@ -79,6 +77,7 @@ fn capabilities() -> Value {
             "full": true,
         },
         "foldingRangeProvider": true,
+        "inlayHintProvider": true,
         "documentFormattingProvider": true,
         "documentRangeFormattingProvider": true,
         "codeActionProvider": true,
@@ -121,19 +120,18 @@ impl Server {
             }
             ("textDocument/didChange", Some(uri)) => {
                 // Each change is the whole text.
-                let text = parameters["contentChanges"].as_array().and_then(|all| all.last());
-                let asks = self.desk.open(&uri).is_some_and(|open| open.asks);
-                if let Some(text) = text {
-                    self.put(uri, &text["text"], &parameters["textDocument"]["version"], asks);
-                }
+                let changes = &parameters["contentChanges"];
+                let last = &changes[changes.as_array().map_or(0, |all| all.len().saturating_sub(1))];
+                let asks = self.desk.open.get(&uri).is_some_and(|open| open.asks);
+                self.put(uri, &last["text"], &parameters["textDocument"]["version"], asks);
             }
             ("textDocument/didClose", Some(uri)) => {
                 self.desk.take(&uri);
                 self.editor.tell("textDocument/publishDiagnostics", json!({ "uri": uri, "diagnostics": [] }));
-                self.changed.extend(self.desk.all_open());
+                self.changed.extend(self.desk.open.keys().cloned());
             }
             ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => {
-                for uri in self.desk.all_open() {
+                for uri in self.desk.open.keys().cloned().collect::<Vec<_>>() {
                     self.desk.forget(&uri);
                     self.changed.insert(uri);
                 }
@@ -161,12 +159,17 @@ impl Server {
     fn publish(&mut self) {
         let mut shown = BTreeSet::new();
         for uri in std::mem::take(&mut self.changed) {
-            if self.desk.open(&uri).is_none() || !shown.insert(self.desk.key(&uri)) {
+            if !self.desk.open.contains_key(&uri) {
                 continue;
             }
             let checked = self.desk.checked(&uri);
-            for (number, own) in checked.uris.iter().enumerate() {
-                let Some(open) = self.desk.open(own) else { continue };
+            if !checked.uris.contains(&uri) {
+                // In a file in which nothing is written nothing is wrong.
+                self.editor.tell("textDocument/publishDiagnostics", json!({ "uri": uri, "diagnostics": [] }));
+            }
+            let is_new = shown.insert(self.desk.key(&uri));
+            for (number, own) in checked.uris.iter().enumerate().filter(|_| is_new) {
+                let Some(open) = self.desk.open.get(own) else { continue };
                 let of_file = checked.inputs.diagnostics.iter().filter(|one| {
                     let file = one.place.as_ref().map_or(0, |place| usize::from(place.span.source.0));
                     file == number || number == 0 && file >= checked.uris.len()
@@ -195,6 +198,10 @@ impl Server {
     /// The answer to a request about a text, and perhaps a position or a range in it.
     fn answer(&mut self, method: &str, asked: &Value) -> Result<Value, (ErrorCode, String)> {
         let invalid = |reason: &str| (ErrorCode::InvalidParams, format!("`{method}`: {reason}"));
+        if method == "completionItem/resolve" {
+            let item = serde_json::from_value(asked.clone()).map_err(|error| invalid(&error.to_string()))?;
+            return Ok(json!(completion::resolved(item)));
+        }
         let uri = asked["textDocument"]["uri"]
             .as_str()
             .ok_or_else(|| invalid("the address of a text is missing"))?;
@@ -233,6 +240,7 @@ impl Server {
                 json!(SemanticTokens { result_id: None, data: outline::tokens(&desk.checked(uri), uri) })
             }
             "textDocument/foldingRange" => json!(desk.checked(uri).source(uri).map(outline::folds)),
+            "textDocument/inlayHint" => json!(outline::hints(&desk.checked(uri), uri)),
             "textDocument/formatting" => json!(self.formatted(uri, None)),
             "textDocument/rangeFormatting" => json!(self.formatted(uri, Some(range()?))),
             "textDocument/codeAction" => json!(changes::fixes(desk, uri, range()?)),
@@ -242,7 +250,7 @@ impl Server {
     }
 
     fn formatted(&self, uri: &str, range: Option<Range>) -> Vec<lsp_types::TextEdit> {
-        let Some(open) = self.desk.open(uri) else { return Vec::new() };
+        let Some(open) = self.desk.open.get(uri) else { return Vec::new() };
         changes::format(&open.text, open.asks, range).into_iter().collect()
     }
 
@@ -283,9 +291,10 @@ fn shown_as(checked: &Checked, one: &Diagnostic) -> lsp_types::Diagnostic {
     let related: Vec<_> = related.collect();
     lsp_types::Diagnostic {
         range,
-        severity: Some(match one.severity {
-            Severity::Error => DiagnosticSeverity::ERROR,
-            Severity::Warning => DiagnosticSeverity::WARNING,
+        severity: Some(if one.severity == Severity::Error {
+            DiagnosticSeverity::ERROR
+        } else {
+            DiagnosticSeverity::WARNING
         }),
         code: Some(NumberOrString::String(one.code.to_string())),
         source: Some("smc".to_owned()),

@@ -5,9 +5,11 @@ use super::place;
 use crate::model::BuiltIn;
 use crate::syntax::ast::PropertyItem;
 use crate::syntax::keywords::{is_marked, is_temporal};
+use crate::syntax::names::Declared;
 use crate::syntax::parse::{blocks, lexemes};
 use crate::syntax::source::{Source, Span};
 use lsp_types::{DocumentSymbol, FoldingRange, SemanticToken, SemanticTokenType, SymbolKind};
+use serde_json::{Value, json};
 
 /// The kinds of words, in the order of their numbers.
 pub(super) const KINDS: [SemanticTokenType; 10] = [
@@ -99,6 +101,20 @@ pub(super) fn folds(source: &Source) -> Vec<FoldingRange> {
     let long = lines.filter(|(first, last)| first < last);
     long.map(|(start_line, last)| FoldingRange { start_line, end_line: last - 1, ..FoldingRange::default() })
         .collect()
+}
+
+/// The unit and the value of each named expression that computes them, behind its name; nothing where they are written.
+pub(super) fn hints(checked: &Checked, uri: &str) -> Vec<Value> {
+    let Some(source) = checked.source(uri) else { return Vec::new() };
+    let hint = |one: &Declared| {
+        let value = one.value.filter(|_| one.span.source == source.id)?;
+        let text =
+            checked.inputs.notes.get(&value)?.split_once(", ").map(|(_, value)| format!("= {value}"))?;
+        let is_written = source.slice(value).starts_with(|c: char| c.is_ascii_digit());
+        let at = place::position(source, one.span.end);
+        (!is_written).then(|| json!({ "position": at, "label": text, "paddingLeft": true }))
+    };
+    checked.names.declared.iter().filter_map(hint).collect()
 }
 
 /// The words of a file with their kinds.

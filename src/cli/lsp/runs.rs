@@ -22,8 +22,6 @@ use std::time::Duration;
 
 /// Time between two reports of progress, s.
 const PACE: f64 = 0.2;
-/// Time of a query in the margin that has no limit of its own.
-const LONGEST: Duration = Duration::from_hours(1);
 
 /// The query of a file, by its place among the queries.
 type Place = (String, usize);
@@ -57,6 +55,10 @@ impl Editor {
 
     pub(super) fn tell(&self, method: &str, parameters: Value) {
         (self.send)(Notification::new(method.to_owned(), parameters).into());
+    }
+
+    fn progress(&self, token: &str, value: &Value) {
+        self.tell("$/progress", json!({ "token": token, "value": value }));
     }
 
     pub(super) fn answer(&self, id: RequestId, result: Result<Value, (ErrorCode, String)>) {
@@ -102,21 +104,19 @@ impl Runs {
     ) -> Result<(), String> {
         let (uri, number, seconds) = asked;
         let checked = desk.checked(uri);
-        if !checked.has_scenario {
-            return Err(
-                "the property file has no scenario; write `for \"file.scn\"` in its first line".to_owned()
-            );
-        }
         let only = indices(&checked, uri, number);
         if only.is_empty() {
-            return Err("the query cannot run: the files have errors".to_owned());
+            let reason = "it has errors, or no scenario: its first line may name one, `for \"file.scn\"`";
+            return Err(format!("the file cannot be asked: {reason}"));
         }
         let scenario = desk.key(uri);
         let draft = Self::draft(desk, &scenario)?;
         let texts: Texts = (desk.text(&scenario)?, desk.text(uri)?);
         let name = place::path(uri).map_or(uri.to_owned(), |path| path.display().to_string());
-        let limit = seconds.filter(|s| s.is_finite() && *s > 0.0).map_or(LONGEST, Duration::from_secs_f64);
-        let mut options = Options::default().timeout(limit);
+        let mut options = Options::default();
+        if let Some(limit) = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()) {
+            options = options.timeout(limit);
+        }
         if let Some(threads) = self.threads {
             options = options.threads(threads);
         }
@@ -129,11 +129,8 @@ impl Runs {
         let (state, editor) = (Arc::clone(&self.state), self.editor.clone());
         Self::spawn(move || {
             editor.ask("window/workDoneProgress/create", json!({ "token": token }));
-            editor.tell(
-                "$/progress",
-                json!({ "token": token, "value":
-                { "kind": "begin", "title": "smc", "cancellable": true, "message": "the trials begin" } }),
-            );
+            let begin = json!({ "kind": "begin", "title": "smc", "cancellable": true, "message": "the trials begin" });
+            editor.progress(&token, &begin);
             editor.ask("workspace/codeLens/refresh", Value::Null);
             let progress = Progress {
                 editor: editor.clone(),
@@ -145,20 +142,17 @@ impl Runs {
                 .parse()
                 .and_then(|model| model.check_files(&[(&name, &texts.1)], &options, &budget, &progress));
             let said = match found {
-                Ok(report) if budget.is_interrupted() => {
-                    format!("cancelled: {}", brief::beside(report.run()))
-                }
                 Ok(report) => brief::beside(report.run()),
                 Err(wrong) => {
-                    let first = wrong.iter().next().map_or(String::new(), |one| one.title.clone());
-                    format!("cannot run: {first}")
+                    wrong.iter().map(|one| format!("cannot run: {}", one.title)).next().unwrap_or_default()
                 }
             };
+            let said = if budget.is_interrupted() { format!("cancelled: {said}") } else { said };
             let mut known = state.lock().unwrap_or_else(PoisonError::into_inner);
             known.running.remove(&token);
             known.verdicts.insert(place, (texts, shortened(said.clone())));
             drop(known);
-            editor.tell("$/progress", json!({ "token": token, "value": { "kind": "end", "message": said } }));
+            editor.progress(&token, &json!({ "kind": "end", "message": said }));
             editor.ask("workspace/codeLens/refresh", Value::Null);
             editor.answer(id, Ok(json!({ "verdict": said })));
         })
@@ -300,6 +294,6 @@ impl Watch for Progress {
         let of = of.map_or(String::new(), |of| format!(" of about {of}"));
         let value =
             json!({ "kind": "report", "message": format!("{trials}{of} trials"), "percentage": share });
-        self.editor.tell("$/progress", json!({ "token": self.token, "value": value }));
+        self.editor.progress(&self.token, &value);
     }
 }
