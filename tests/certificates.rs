@@ -90,6 +90,7 @@ fn a_stranger_computes_every_result_again() {
 /// Further queries, with the other procedures.
 const MORE: &str = "
 property heads = F<=1 s (coin.heads >= 1)
+check P(heads) >= 0.4
 check Q(0.9, time_until(coin.heads >= 3)) <= 9 s
 estimate P(heads) by massart(epsilon = 0.05, delta = 0.05)
 estimate P(heads) by gbas(epsilon = 0.2, delta = 0.05)
@@ -110,6 +111,15 @@ fn the_program_computes_every_procedure_again() {
     let file = place.path("coin.smcc");
     for (code, said) in verified(&file) {
         assert_eq!(code, 0, "{said}");
+    }
+    // Nor can the evidence of a test be another one.
+    for at in (0..whole.len()).filter(|k| whole[*k].get("evidence").is_some()) {
+        let mut lines = whole.clone();
+        lines[at]["evidence"][1][0] = json!(whole[at]["evidence"][1][0].as_f64().unwrap() + 0.01);
+        forged(&place, &lines);
+        for (code, said) in verified(&file) {
+            assert!(code == 1 && said.contains("evidence"), "{said}");
+        }
     }
     // No number of a result can be changed.
     let mut tried = 0;

@@ -147,10 +147,13 @@ class OneSided:
         self.prior = ln_beta(self.a, self.b) + ln_tails(self.a, self.b, theta)[1]
         self.threshold, self.wanted = SLACK - math.log(error), 0
 
-    def is_reached(self, s, f):
+    def log(self, s, f):
         a, b = self.a + s, self.b + f
         mass = ln_beta(a, b) + ln_tails(a, b, self.theta)[1]
-        return mass - self.prior - s * math.log(self.theta) - f * math.log1p(-self.theta) >= self.threshold
+        return mass - self.prior - s * math.log(self.theta) - f * math.log1p(-self.theta)
+
+    def is_reached(self, s, f):
+        return self.log(s, f) >= self.threshold
 
     def look(self, s, f):
         # More failures never make fewer successes enough.
@@ -191,6 +194,27 @@ def sprt(rule, theta):
     say_below, say_above = (SLACK - math.log(rule[error]) for error in ("alpha", "beta"))
     is_above = lambda s, f: ratio(s, f, other, low) >= say_above
     return lambda s, f, _: "below" if ratio(s, f, one, high) >= say_below else "above" if is_above(s, f) else None
+
+
+def weighed(told, rule, theta, readings):
+    """That the evidence of a test is the one that is told: its logarithms for above and for below at the last trial but one and at the
+    last one, where unresolved trials are read as they speak least for it."""
+    if told is None:
+        return
+    if rule["name"] in ("eprocess", "three_way"):
+        half = 0.5 * rule["alpha"]
+        above, below = OneSided(theta, rule.get("beta", half)), OneSided(1 - theta, rule["alpha"] if "beta" in rule else half)
+        logs = (above.log, lambda s, f: below.log(f, s))
+    elif rule["name"] in ("sprt", "sprt2"):
+        low, high = theta - rule["indifference"], theta + rule["indifference"]
+        one, other = (low, high) if rule["name"] == "sprt" else (theta, theta)
+        logs = (lambda s, f: ratio(s, f, other, low), lambda s, f: ratio(s, f, one, high))
+    else:
+        raise Refused("a test that only counts has no evidence")
+    counts = [[(sum(part), len(part) - sum(part)) for part in (reading[:-1], reading)] for reading in (readings[0], readings[-1])]
+    found = [log(*counts[-side][k]) for k in (0, 1) for side, log in enumerate(logs)]
+    pairs = zip([log for both in told for log in both], found, strict=True)
+    require(all(abs(a - b) <= 1e-6 * max(1.0, abs(b)) for a, b in pairs), f"the evidence is {told}, and the outcomes say {found}")
 
 
 def plan(rule, theta):

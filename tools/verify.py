@@ -19,7 +19,7 @@ import sys
 
 from theorems import (
     ESTIMATES, RACE, SLACK, TESTS, Refused, Sequence, Unchecked, at_all_times, bisected, capitals, clopper_pearson, decided,
-    difference, gbas, held_at_all_times, hull, is_tail_above, is_tail_below, ln_tails, mean, mixed, require, tail,
+    difference, gbas, held_at_all_times, hull, is_tail_above, is_tail_below, ln_tails, mean, mixed, require, tail, weighed,
 )
 
 FORMAT = "certificate 1"
@@ -147,6 +147,7 @@ def check(result, ask, line):
         require(rule["name"] == ask["test"]["name"], f"`{ask['test']['name']}` was asked for, not `{rule['name']}`")
         found = [until(TESTS[rule["name"]](rule, ask["threshold"]), reading) for reading in measure.readings(line)]
         stopped(result, found)
+        weighed(line.get("evidence"), rule, ask["threshold"], measure.readings(line))
         decisions = {decision for *_, decision in found}
         decision = decisions.pop() if len(decisions) == 1 else None
     error = error if measure.kind == "probability" else rule["delta"]

@@ -93,7 +93,7 @@ const PAGES: [&str; 4] = [
     include_str!("../../docs/buildings.md"),
 ];
 
-/// What the manual says of a word: the first row of a table that begins with it, or the paragraph below its heading.
+/// The manual about a word: the first row of a table that begins with it, or the paragraph below its heading.
 pub(super) fn keyword(word: &str) -> Option<String> {
     let begins = |text: &str| text.strip_prefix(word).is_some_and(|rest| rest.starts_with([' ', '`', '(']));
     let mut rows = PAGES.iter().flat_map(|page| page.lines()).filter_map(|line| line.strip_prefix("| `"));

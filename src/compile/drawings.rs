@@ -13,7 +13,7 @@ type Read = Result<Drawing, Vec<GeometryError>>;
 /// A path, and the bits of the unit of its coordinates.
 type Key = (String, Option<u64>);
 
-/// What was read of a file.
+/// A file that was read.
 #[derive(Debug)]
 struct Known {
     print: Digest,

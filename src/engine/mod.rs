@@ -28,6 +28,7 @@ pub use answer::words::at_most;
 pub use call::{Call, CommandLine, quoted};
 pub use fault::Fault;
 pub use flaw::Flaw;
+pub use sampling::procedure::last_evidence;
 pub use sampling::watch::{CallForecast, Forecast, Likely, Nobody, Watch};
 pub use session::{forecast, run};
 pub use trials::dependence::Watched;

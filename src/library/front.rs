@@ -94,7 +94,7 @@ pub struct Inputs {
     pub study: Option<Study>,
     /// How often the model was right about recorded people, where a file says so.
     pub calibration: Option<Calibration>,
-    /// What names stand for, if the files say that it is noted.
+    /// The meanings of names, if the files say that they are noted.
     pub notes: Notes,
 }
 

@@ -74,6 +74,11 @@ pub fn follows(head: &certificate::Head, entry: &Entry, threads: &Threads) -> Re
         let reads = counts(wanted.iter().map(|(.., count)| *count).collect());
         return Err(format!("it has {has} outcomes, and the rule reads {reads}"));
     }
+    let evidence = match (&entry.queries[..], &entry.outcomes[..]) {
+        ([query], [(_, readings)]) => certificate::evidence(query, readings),
+        _ => None,
+    };
+    differ("the evidence", &entry.evidence, &evidence.unwrap_or_default(), &[])?;
     differ("", &entry.result, &certificate::fields(result), &UNSAID)?;
     differ("the claim", &entry.claim, &serde_json::json!(result.certificate), &[])
 }

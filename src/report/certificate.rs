@@ -12,7 +12,7 @@ use crate::compile::Study;
 use crate::compile::study::{Ask, Measure, Query, RankOption};
 use crate::engine::outcome::{CallResult, QueryResult};
 use crate::engine::shards::{Column, Kept, RunRecord, SplitRun};
-use crate::engine::{Budget, Call};
+use crate::engine::{Budget, Call, last_evidence};
 use crate::logic::Root;
 use crate::trials::cell::Reading;
 use crate::trials::setup::is_never_early;
@@ -36,6 +36,8 @@ pub struct Head {
     smc: String,
     /// Version of the program.
     pub version: String,
+    /// The commit from which it was built, if whoever built it said so in the variable `SMC_COMMIT`.
+    pub commit: Option<String>,
     /// The scenario.
     pub scenario: String,
     /// Seed of all random numbers.
@@ -71,6 +73,8 @@ pub struct Entry {
     pub outcomes: Vec<(Column, Vec<Reading>)>,
     /// The columns that are times.
     pub times: Vec<(Column, Time)>,
+    /// The evidence of a test at its end.
+    pub evidence: Value,
     /// The runs of splitting.
     pub runs: Vec<(SplitRun, RunRecord)>,
 }
@@ -100,6 +104,7 @@ pub fn text(study: &Study, call: &Call<'_>, budget: &Budget, run: &CallResult, k
     let head = Head {
         smc: FORMAT.to_owned(),
         version: run.version.clone(),
+        commit: option_env!("SMC_COMMIT").map(str::to_owned),
         scenario: run.scenario.clone(),
         seed: run.seed,
         generator: (random::GENERATOR.to_owned(), random::LAYOUT),
@@ -120,7 +125,13 @@ pub fn text(study: &Study, call: &Call<'_>, budget: &Budget, run: &CallResult, k
             if let Some(time) = time(study, column) {
                 head["time"] = json!(time);
             }
-            lines.push(json::joined([head, packed(&kept.readings(column, count))]));
+            let readings = kept.readings(column, count);
+            if let [query] = queries[..]
+                && let Some(evidence) = evidence(query, &readings)
+            {
+                head["evidence"] = evidence;
+            }
+            lines.push(json::joined([head, packed(&readings)]));
         }
         if let Some((world, _)) = queries.iter().find_map(|query| split(&query.ask)) {
             lines.push(json!({ "runs_of_splitting": kept.runs(world) }));
@@ -133,6 +144,12 @@ pub fn text(study: &Study, call: &Call<'_>, budget: &Budget, run: &CallResult, k
     let digest = Digest::of(text.as_bytes());
     let _ = writeln!(text, "{}", json!({ "digest": digest.to_string() }));
     text
+}
+
+/// The evidence of a test after the last trial but one, and after the last one: its logarithms for above and for below.
+pub fn evidence(query: &Query, readings: &[Reading]) -> Option<Value> {
+    let weights = last_evidence(&query.ask, readings)?;
+    Some(json!(weights.map(|both| both.map(|weight| weight.log))))
 }
 
 /// Reads a certificate.
@@ -165,7 +182,8 @@ pub fn read(text: &str) -> Result<(Head, Vec<Entry>), Unreadable> {
         if line.get("result").is_some() {
             let [result, claim, queries] = ["result", "claim", "queries"].map(|name| line[name].take());
             let (outcomes, times, runs) = (Vec::new(), Vec::new(), Vec::new());
-            entries.push(Entry { result, claim, queries: known(queries)?, outcomes, times, runs });
+            let (queries, evidence) = (known(queries)?, Value::Null);
+            entries.push(Entry { result, claim, queries, outcomes, times, evidence, runs });
             continue;
         }
         let entry = entries.last_mut().ok_or_else(|| unreadable("outcomes stand before the first result"))?;
@@ -175,6 +193,9 @@ pub fn read(text: &str) -> Result<(Head, Vec<Entry>), Unreadable> {
                 let column = known(line["column"].take())?;
                 if let Some(time) = line.get_mut("time") {
                     entry.times.push((column, known(time.take())?));
+                }
+                if let Some(evidence) = line.get_mut("evidence") {
+                    entry.evidence = evidence.take();
                 }
                 entry.outcomes.push((column, unpacked(line)?));
             }

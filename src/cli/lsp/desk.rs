@@ -77,7 +77,7 @@ impl Desk {
         self.open.remove(uri);
     }
 
-    /// What is known of everything that a text belongs to is known no more.
+    /// Forgets everything that was known of the files to which a text belongs.
     pub(super) fn forget(&mut self, uri: &str) {
         self.checked.retain(|key, checked| key != uri && !checked.uris.iter().any(|own| own == uri));
         let key = self.key(uri);

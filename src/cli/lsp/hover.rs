@@ -10,7 +10,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::parse::lexeme_at;
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind, Position};
 
-/// What is said of a position.
+/// The text for a position.
 pub(super) fn hover(checked: &Checked, uri: &str, position: Position) -> Option<Hover> {
     let source = checked.source(uri)?;
     let here = lexeme_at(source, place::byte(source, position))?;

@@ -101,7 +101,7 @@ pub(crate) struct Context<'a> {
     pub(crate) margins: Option<Margins>,
     /// Parts of the files that could not be read.
     pub(crate) torn: Vec<&'a Broken>,
-    /// What each name stands for, where somebody wants to know.
+    /// The meaning of each name in words, where somebody wants to know.
     pub(crate) notes: Option<Notes>,
 }
 

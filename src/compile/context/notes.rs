@@ -1,4 +1,4 @@
-//! What names, members and calls stand for, in words: kind, unit, and the value as far as it is known. An editor shows them.
+//! The meanings of names, members and calls in words: kind, unit, and the value as far as it is known. An editor shows them.
 
 use crate::compile::context::typed::Typed;
 use crate::syntax::source::Span;

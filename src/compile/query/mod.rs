@@ -50,7 +50,7 @@ pub struct Examined {
     pub found: Vec<Diagnostic>,
     /// The starts of agents in the worlds that are certainly used.
     pub starts: Vec<Starts>,
-    /// What names stand for, in the world of the call, where the files say that it is noted.
+    /// The meanings of names in the world of the call, where the files say that they are noted.
     pub notes: Notes,
 }
 

@@ -12,7 +12,7 @@ use crate::stats::{
     self, AnyEstimator, AnyTest, Bounded, Coverage, Decision, Estimator as _, Hypothesis, Outcome, Readings,
     Rule as _, Statement,
 };
-use crate::trials::cell::Cell;
+use crate::trials::cell::{Cell, Reading};
 
 /// Bins of the histogram of a metric.
 const BINS: usize = 40;
@@ -83,6 +83,19 @@ pub(in crate::engine) fn goal(kind: &MeasureKind) -> Option<Goal> {
         }
         MeasureKind::Quantile { .. } | MeasureKind::Curve { .. } => None,
     }
+}
+
+/// The evidence of a test of a probability after its last outcome but one, and after the last one.
+pub fn last_evidence(ask: &Ask, readings: &[Reading]) -> Option<[stats::Weights; 2]> {
+    let Ok(Procedure::Test(mut test)) = Procedure::new(ask, 0) else { return None };
+    let outcome = |reading: &Reading| reading.truth().map_or(Outcome::Unresolved, Outcome::from);
+    let (last, others) = readings.split_last()?;
+    for reading in others {
+        test.observe(outcome(reading));
+    }
+    let before = test.weights()?;
+    test.observe(outcome(last));
+    Some([before, test.weights()?])
 }
 
 impl Procedure {

@@ -39,7 +39,7 @@ pub struct Declared {
 pub struct Used {
     /// Where.
     pub span: Span,
-    /// Which declaration it means.
+    /// The declaration that it means.
     pub means: usize,
 }
 
@@ -134,7 +134,7 @@ impl Walk {
         at
     }
 
-    /// What a name means where the walk is.
+    /// The declaration that a name means where the walk is.
     fn look_up(&self, name: &str) -> Option<usize> {
         let known = |scope| self.names.known.get(&(scope, name.to_owned())).copied();
         let bound = self.bound.iter().rev().find(|(bound, _)| bound == name).map(|(_, at)| *at);
