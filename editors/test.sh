@@ -14,10 +14,10 @@ limit=300000
 has() { command -v "$1" >/dev/null 2>&1; }
 left_out() { echo "left out: $1"; }
 
-if has node && has npm; then
+if has node && has npm \
+  && (cd "$here/vscode" && npm install --no-audit --no-fund --no-package-lock --loglevel=error); then
   (
     cd "$here/vscode"
-    npm install --no-audit --no-fund --no-package-lock --loglevel=error
     npm run --silent check
     npm run --silent build
     npm run --silent test:grammar
@@ -38,7 +38,7 @@ if has node && has npm; then
   left_out "VS Code itself, which is not started"
   (cd "$here/tree-sitter-smc" && node keywords.mjs --check)
 else
-  left_out "the extension for VS Code, because Node.js or npm is missing"
+  left_out "the extension for VS Code, because Node.js or npm is missing, or packages cannot be installed"
 fi
 
 if has "$tree_sitter" && has cc; then
