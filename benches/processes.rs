@@ -63,6 +63,7 @@ fn ours(study: &Study) -> (f64, f64) {
         branch: 0,
         explains: true,
         shows_evidence: false,
+        repeats: false,
         seed: 1,
         line: CommandLine::default(),
         only: Vec::new(),

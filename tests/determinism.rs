@@ -111,6 +111,7 @@ fn call() -> Call<'static> {
         branch: 0,
         explains: true,
         shows_evidence: false,
+        repeats: false,
         seed: 11,
         line: CommandLine {
             scenario: "a.scn".to_owned(),

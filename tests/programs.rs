@@ -231,6 +231,17 @@ fn outcomes_that_depend_on_each_other_are_told() {
     let queries = "estimate P(G<=1 s (v > 0 m/s)) by clopper_pearson(trials = 400)";
     let said = check(script, ("{trial}", SIGNAL), queries, &["-q"]);
     assert!(said.out.contains("depend on each other: 400 of them have 8 runs"), "{}", said.out);
+    for more in [["--certificate", "a.smcc"], ["--launch", "local"]] {
+        let said = check(script, ("{trial}", SIGNAL), queries, &[&["-q"], &more[..]].concat());
+        assert!(said.out.contains("400 of them have 8 runs"), "{more:?}: {}", said.out);
+    }
+    // The same for each move of a ranking.
+    let script = "v=$(( $1 / 20 % 2 )); echo t,id,x,y,v; for t in 0 0.5 1; do echo $t,a,1,2,$v; done";
+    let lines = "signal v = column(\"v\")\nagents people[1] = columns(\"id\", \"x\", \"y\")\n}\n\
+                 moves people[1] for 1 s { stop ";
+    let ranked = "rank moves of people[1] by P(F<=1 s (v > 0)) within 0.15";
+    let said = check(script, ("{trial} {move}", lines), ranked, &["-q"]);
+    assert!(said.out.contains("depend on each other"), "{}{}", said.out, said.err);
     let said = check(DRAW, ("{seed}", SIGNAL), queries, &["-q"]);
     assert!(!said.out.contains("depend on each other"), "{}", said.out);
 }

@@ -26,6 +26,7 @@ fn call() -> Call<'static> {
         branch: 0,
         explains: false,
         shows_evidence: false,
+        repeats: false,
         seed: 5,
         line: CommandLine { scenario: "a.scn".to_owned(), ..CommandLine::default() },
         only: Vec::new(),

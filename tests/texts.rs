@@ -68,6 +68,7 @@ pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> C
         branch: 0,
         explains: true,
         shows_evidence: false,
+        repeats: false,
         seed,
         line: CommandLine { scenario: "model.scn".to_owned(), ..CommandLine::default() },
         only: Vec::new(),

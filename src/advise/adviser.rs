@@ -326,6 +326,7 @@ impl<'a> Adviser<'a> {
             branch: (advice.cycle & 0xffff) as u16,
             explains: false,
             shows_evidence: false,
+            repeats: false,
             line: CommandLine::default(),
             only: vec![query.index],
             place: &|_: Span| (String::new(), 0),

@@ -15,9 +15,7 @@ use crate::base::visible::visible;
 use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::shards::{Kept, Origin, Part, Recorder, Stored};
 use crate::engine::traces::{Traces, traces};
-use crate::engine::{
-    Budget, Call, CallForecast, CommandLine, Executor, Outcomes, Watched, forecast, run as run_study,
-};
+use crate::engine::{Budget, Call, CallForecast, CommandLine, Outcomes, forecast, run as run_study};
 use crate::library::program::playing;
 use crate::model::Scenario;
 use crate::report::html::Page;
@@ -142,6 +140,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         branch: 0,
         explains: !is_given,
         shows_evidence: arguments.evidence || arguments.report.is_some(),
+        repeats: false,
         line: CommandLine { outcomes: is_given, ..line(arguments) },
         only: only.clone(),
         place: &place,
@@ -158,7 +157,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
     let scenario = study.worlds.first().map(|world| Arc::clone(&world.scenario));
     let result = if let (Some(given), Some(scenario)) = (given, scenario) {
         let work = |outcomes: &Outcomes<'_>| run_study(study, &call(), outcomes, &budget, &progress);
-        given.run(&scenario, study, &executor, work).map(Some)
+        given.run(&scenario, &executor, work).map(Some)
     } else if let Some(kept) = &kept {
         let keep = |part: &Part| kept.keep(part);
         let recorder = Recorder::new(Stored::nothing(&executor), &executor, origin, &keep);
@@ -166,15 +165,8 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
         recorder.flush(budget.elapsed());
         run.map(Some).map_err(|fault| library::refusals(&fault))
     } else if let Way::Check(Check { launch: None, .. }) = way {
-        // Trials of the kernel are independent; those of another program are watched.
-        let watched = Watched::new(&executor);
-        let own: &dyn Executor = if programs.is_some() { &watched } else { &executor };
-        let run = run_study(study, &call(), own, &budget, &progress).map(|mut run| {
-            run.warnings.extend(watched.dependence.warnings(study));
-            run.warnings.extend(programs.iter().flat_map(|programs| programs.doubts()));
-            Some(run)
-        });
-        run.map_err(|fault| library::refusals(&fault))
+        let run = run_study(study, &call(), &executor, &budget, &progress);
+        run.map(Some).map_err(|fault| library::refusals(&fault))
     } else {
         let mut warn = |warnings: &[Diagnostic]| complaint::tell_all(warnings, &[], colors);
         let mut rounds = Rounds {
@@ -198,6 +190,7 @@ pub(super) fn run(arguments: &Questions, way: &Way<'_>, colors: Colors) -> Exit 
             for result in &mut run.results {
                 result.model = inputs.calibration.as_ref().and_then(|known| known.about(result));
             }
+            run.warnings.extend(programs.iter().flat_map(|programs| programs.doubts()));
             run.inputs.clone_from(&reporter.prints);
             if let (Some(kept), Some(path)) = (&kept, certificate) {
                 let text = report::certificate::text(study, &call(), &budget, &run, kept);

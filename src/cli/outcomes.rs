@@ -133,17 +133,15 @@ impl Given {
     pub(super) fn run(
         self,
         scenario: &Scenario,
-        study: &Study,
         threads: &Threads,
         work: impl FnOnce(&Outcomes<'_>) -> Result<CallResult, Fault>,
     ) -> Result<CallResult, Vec<Diagnostic>> {
         let name = self.name.clone();
         let outcomes = self.outcomes(scenario, threads);
-        let mut run = work(&outcomes).map_err(|fault| library::refusals(&fault))?;
+        let run = work(&outcomes).map_err(|fault| library::refusals(&fault))?;
         if let Some(reason) = outcomes.error() {
             return Err(vec![wrong(&name, &reason)]);
         }
-        run.warnings.extend(outcomes.dependence.warnings(study));
         Ok(run)
     }
 

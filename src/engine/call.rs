@@ -14,6 +14,8 @@ pub struct Call<'c> {
     pub explains: bool,
     /// Whether its results say how their evidence grew.
     pub shows_evidence: bool,
+    /// Whether drivers from outside lead its trials: one in a hundred runs twice.
+    pub repeats: bool,
     /// The files and settings of the call, for replay lines.
     pub line: CommandLine,
     /// Indices of the queries to ask; all of them if empty.

@@ -31,7 +31,6 @@ pub use flaw::Flaw;
 pub use sampling::procedure::last_evidence;
 pub use sampling::watch::{CallForecast, Forecast, Likely, Nobody, Watch};
 pub use session::{forecast, run};
-pub use trials::dependence::Watched;
 pub use trials::executor::{Executor, Threads, Within};
 pub use trials::outcomes::Outcomes;
 pub use trials::placement::{overfull_starts, placeable};

@@ -1,6 +1,6 @@
 //! A whole call: worlds made ready, queries put into groups that share trials, forecast, and run.
 
-use crate::compile::study::{Ask, Query, Study};
+use crate::compile::study::{Ask, Query, Study, World};
 use crate::engine::answer::every;
 use crate::engine::answer::{Answers, Sampling, Turn};
 use crate::engine::call::Call;
@@ -17,6 +17,7 @@ use crate::engine::sampling::resources::Resources;
 use crate::engine::sampling::splitting::Question;
 use crate::engine::sampling::tally::Tally;
 use crate::engine::sampling::watch::{CallForecast, Forecast, Watch};
+use crate::engine::trials::dependence::Untrusted;
 use crate::engine::trials::executor::Executor;
 use crate::engine::trials::placement::all_placeable;
 use crate::engine::trials::prepared::PreparedWorld;
@@ -39,6 +40,11 @@ pub fn run(
     budget: &Budget,
     watch: &dyn Watch,
 ) -> Result<CallResult, Fault> {
+    // Trials of the kernel are independent; others are watched.
+    let untrusted = Untrusted::new(executor, call.repeats);
+    let is_played = |world: &World| world.scenario.processes.outside.is_some();
+    let is_outside = call.repeats || call.line.outcomes || study.worlds.iter().any(is_played);
+    let executor: &dyn Executor = if is_outside { &untrusted } else { executor };
     let asked = asked(study, call);
     let worlds = prepare(study, &asked, call)?;
     let session = Session { call, budget, worlds: &worlds };
@@ -112,6 +118,7 @@ pub fn run(
         replay: again(call, budget, &results),
         results,
         elapsed_s: budget.elapsed(),
+        warnings: untrusted.warnings(study),
         ..CallResult::of(title, call.seed)
     })
 }
@@ -159,6 +166,11 @@ pub fn forecast(
     executor: &dyn Executor,
     budget: &Budget,
 ) -> Result<CallForecast, Fault> {
+    // Trials of the kernel are independent; others are watched.
+    let untrusted = Untrusted::new(executor, call.repeats);
+    let is_played = |world: &World| world.scenario.processes.outside.is_some();
+    let is_outside = call.repeats || call.line.outcomes || study.worlds.iter().any(is_played);
+    let executor: &dyn Executor = if is_outside { &untrusted } else { executor };
     let asked = asked(study, call);
     let worlds = prepare(study, &asked, call)?;
     let session = Session { call, budget, worlds: &worlds };

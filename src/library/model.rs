@@ -14,9 +14,7 @@ use crate::base::random::TrialKey;
 use crate::compile::{Study, matches};
 use crate::engine::outcome::{CallResult, Failure};
 use crate::engine::traces::{Traces, simulated, traces};
-use crate::engine::{
-    Budget, Call, CommandLine, Executor, Fault, Nobody, Watch, Watched, no_start, placeable, run,
-};
+use crate::engine::{Budget, Call, CommandLine, Fault, Nobody, Watch, no_start, placeable, run};
 use crate::gait;
 use crate::kernel::driver::Drivers;
 use crate::kernel::{Address, Program, start};
@@ -272,12 +270,7 @@ impl Model {
         self.ask(properties, options, budget, |asked| {
             let Asked { study, call, inputs, prints, programs } = asked;
             let threads = threads?;
-            // Trials of the kernel are independent; others are watched.
-            let watched = Watched::new(&threads).twice(!self.own.is_empty());
-            let is_watched = programs.is_some() || !self.own.is_empty();
-            let own: &dyn Executor = if is_watched { &watched } else { &threads };
-            let mut run = run(study, call, own, budget, watch)?;
-            run.warnings.extend(watched.dependence.warnings(study));
+            let mut run = run(study, call, &threads, budget, watch)?;
             run.warnings.extend(programs.iter().flat_map(|programs| programs.doubts()));
             let broken = match &run.failure {
                 Some(Failure::Model(flaw)) => Some(of_model(flaw)),
@@ -351,6 +344,7 @@ impl Model {
             branch: 0,
             explains: true,
             shows_evidence: options.evidence,
+            repeats: !self.own.is_empty(),
             line: self.line(properties),
             only,
             place: &place,

@@ -54,6 +54,7 @@ pub fn follows(head: &certificate::Head, entry: &Entry, threads: &Threads) -> Re
         branch: 0,
         explains: false,
         shows_evidence: false,
+        repeats: false,
         line: CommandLine::default(),
         only: Vec::new(),
         place: &place,

@@ -2,11 +2,13 @@
 //! Trials of the kernel are independent by construction; those of other programs need not be.
 
 use crate::compile::Study;
-use crate::engine::trials::executor::{Cells, Executor, Job, Threads};
+use crate::engine::sampling::splitting::{RunRecord, SplitRun};
+use crate::engine::trials::executor::{Cells, Executor, Job};
 use crate::logic::Invalid;
 use crate::trials::budget::Budget;
 use crate::trials::cell::{Cell, Item, Reading};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// Fewer outcomes show no dependence, and such a distance from what independent ones have, in standard deviations, does:
@@ -15,8 +17,11 @@ const FEWEST: u64 = 40;
 const FAR: f64 = 4.0;
 
 /// Runs of equal truth values in the trials of each column of each world, as far as they were looked at.
-#[derive(Debug, Default)]
-pub struct Dependence(Mutex<BTreeMap<(usize, usize), Runs>>);
+#[derive(Default)]
+struct Dependence(Mutex<BTreeMap<(usize, usize, Advice), Runs>>);
+
+/// The option of a ranking of moves that an item follows.
+type Advice = Option<(usize, usize)>;
 
 /// Runs of equal truth values.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,13 +58,10 @@ impl Runs {
 
 impl Dependence {
     /// Looks at the cells of a trial of a job.
-    pub(super) fn see(&self, job: &Job<'_>, item: Item, row: &[Cell]) {
-        if item.advice.is_some() {
-            return;
-        }
+    fn see(&self, job: &Job<'_>, item: Item, row: &[Cell]) {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         for (cell, column) in row.iter().zip(&job.columns) {
-            let runs = all.entry((job.prepared.number.unwrap_or(0), *column)).or_default();
+            let runs = all.entry((job.prepared.number.unwrap_or(0), *column, item.advice)).or_default();
             if runs.next == item.index {
                 runs.next += 1;
                 cell.reading.truth().into_iter().for_each(|truth| runs.see(truth));
@@ -68,10 +70,10 @@ impl Dependence {
     }
 
     /// A warning for each column whose outcomes are not independent.
-    pub fn warnings(&self, study: &Study) -> Vec<String> {
+    fn warnings(&self, study: &Study) -> Vec<String> {
         let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let far = all.iter().filter(|(_, runs)| runs.distance().abs() > FAR);
-        far.map(|((world, column), runs)| {
+        far.map(|((world, column, _), runs)| {
             let column = study.worlds.get(*world).and_then(|world| world.columns.get(*column));
             format!(
                 "outcomes of `{}` depend on each other: {} of them have {} runs of equal ones, independent ones about {:.0}; \
@@ -89,54 +91,82 @@ impl Dependence {
 /// One trial of so many runs twice where drivers are not those of the kernel.
 const TWICE: u64 = 100;
 
-/// Threads whose outcomes are looked at.
-pub struct Watched<'a> {
-    threads: &'a Threads,
-    /// What the outcomes tell.
-    pub dependence: Dependence,
+/// An executor whose trials the kernel does not make: its outcomes are looked at.
+pub struct Untrusted<'a> {
+    own: &'a dyn Executor,
+    dependence: Dependence,
+    /// Whether one trial in a hundred runs twice: a driver that answers otherwise the second time says so itself, as a fault.
     is_twice: bool,
 }
 
-impl<'a> Watched<'a> {
-    /// Of these threads.
-    pub fn new(threads: &'a Threads) -> Self {
-        Self { threads, dependence: Dependence::default(), is_twice: false }
+impl<'a> Untrusted<'a> {
+    /// Of this executor.
+    pub fn new(own: &'a dyn Executor, is_twice: bool) -> Self {
+        Self { own, dependence: Dependence::default(), is_twice }
     }
 
-    /// One trial in a hundred runs twice: a driver that answers otherwise the second time says so itself, as a fault.
-    #[must_use]
-    pub fn twice(self, is_twice: bool) -> Self {
-        Self { is_twice, ..self }
+    /// A warning for each column whose outcomes are not independent.
+    pub fn warnings(&self, study: &Study) -> Vec<String> {
+        self.dependence.warnings(study)
+    }
+
+    /// The places of the items that run twice.
+    fn checked<'i>(&self, items: &'i [Item]) -> impl Iterator<Item = usize> + use<'i> {
+        let is_twice = self.is_twice;
+        (0..items.len()).filter(move |place| is_twice && items[*place].index.is_multiple_of(TWICE))
     }
 }
 
-impl Executor for Watched<'_> {
+impl Executor for Untrusted<'_> {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let is_checked = |place: &usize| self.is_twice && items[*place].index.is_multiple_of(TWICE);
-        let checked: Vec<usize> = (0..items.len()).filter(is_checked).collect();
+        Ok(self.run_all(&[(job, items.to_vec())], budget)?.pop().unwrap_or_default())
+    }
+
+    fn run_all(&self, parts: &[(&Job<'_>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
         // Beside the others, so that they fill lanes instead of batches of their own.
-        let again: Vec<Item> = checked.iter().map(|place| items[*place]).collect();
-        let mut cells = self.threads.run(job, &[items, &again].concat(), budget)?;
-        for (row, place) in (items.len()..).zip(checked) {
-            let row = cells.row(row).filter(|row| row.iter().any(|cell| cell.reading == Reading::Faulty));
-            if let Some(row) = row.map(<[Cell]>::to_vec) {
-                cells.put(place, &row);
+        let again = |items: &[Item]| -> Vec<Item> {
+            items.iter().copied().chain(self.checked(items).map(|place| items[place])).collect()
+        };
+        let both: Vec<_> = parts.iter().map(|(job, items)| (*job, again(items))).collect();
+        let mut all = self.own.run_all(&both, budget)?;
+        for ((job, items), cells) in parts.iter().zip(&mut all) {
+            for (row, place) in (items.len()..).zip(self.checked(items)) {
+                let row = cells.row(row).filter(|row| row.iter().any(|cell| cell.reading == Reading::Faulty));
+                if let Some(row) = row.map(<[Cell]>::to_vec) {
+                    cells.put(place, &row);
+                }
+            }
+            cells.truncate(items.len());
+            for (item, row) in items.iter().zip(cells.rows()) {
+                if let Some(row) = row {
+                    self.dependence.see(job, *item, row);
+                }
             }
         }
-        cells.truncate(items.len());
-        for (item, row) in items.iter().zip(cells.rows()) {
-            if let Some(row) = row {
-                self.dependence.see(job, *item, row);
-            }
-        }
-        Ok(cells)
+        Ok(all)
     }
 
     fn width(&self, job: &Job<'_>) -> usize {
-        self.threads.width(job)
+        self.own.width(job)
     }
 
     fn everywhere(&self, work: &(dyn Fn() + Sync)) {
-        self.threads.everywhere(work);
+        self.own.everywhere(work);
+    }
+
+    fn is_stored(&self) -> bool {
+        self.own.is_stored()
+    }
+
+    fn request(&self, job: &Job<'_>, advice: Option<(usize, usize)>, trials: Range<u64>) -> bool {
+        self.own.request(job, advice, trials)
+    }
+
+    fn record(&self, run: &SplitRun) -> Option<Option<RunRecord>> {
+        self.own.record(run)
+    }
+
+    fn made(&self, run: &SplitRun, record: &RunRecord) {
+        self.own.made(run, record);
     }
 }

@@ -3,7 +3,6 @@
 
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
-use crate::engine::trials::dependence::Dependence;
 use crate::engine::trials::executor::{Cells, Executor, Job, Threads};
 use crate::kernel::Run;
 use crate::logic::Invalid;
@@ -25,8 +24,6 @@ pub struct Outcomes<'a> {
     /// Trials that are asked for at a time.
     width: usize,
     known: Mutex<Known<'a>>,
-    /// What the outcomes tell of their independence.
-    pub dependence: Dependence,
 }
 
 /// Rows that were read.
@@ -54,7 +51,7 @@ impl<'a> Outcomes<'a> {
     /// Of a source of rows, of which `width` are asked for at a time.
     pub fn new(source: Box<Source<'a>>, width: usize, threads: &'a Threads) -> Self {
         let known = Known { source, rows: Vec::new(), is_over: false, error: None };
-        Self { threads, width, known: Mutex::new(known), dependence: Dependence::default() }
+        Self { threads, width, known: Mutex::new(known) }
     }
 
     fn known(&self) -> MutexGuard<'_, Known<'a>> {
@@ -98,7 +95,6 @@ impl Executor for Outcomes<'_> {
                     cell.reading = Reading::Unresolved;
                 }
             }
-            self.dependence.see(job, *item, row);
             cells.put(place, row);
         }
         Ok(cells)
