@@ -80,6 +80,35 @@ fn a_party_is_one_body_at_the_mean_of_its_members() {
     assert_eq!(own.agents[0].particle.unwrap().radius(0.4), 0.4);
 }
 
+/// Person 2 walks at 1.0 m/s here, the companion at 1.4 m/s.
+#[test]
+fn laws_are_those_around_the_mean_of_companions() {
+    let table = TABLE.replace("1,2,1.2,0.6,1.4,0", "1,2,1.2,0.6,1.0,0");
+    let wanted = |people: &str| {
+        let text = text("{ velocity = recorded }", people);
+        let model = Draft::new("seen.scn", text).file("here.csv", table.as_str()).parse();
+        let found = model.unwrap_or_else(|errors| panic!("{errors}")).scenario().clone();
+        let driving = |agent: &smc::model::Agent| (agent.start.driving().x * 1e9).round() / 1e9;
+        found.agents.iter().map(driving).collect::<Vec<_>>()
+    };
+    let law = "{ heading = recorded + normal(0 deg, 5 deg) }";
+    // Whoever is declared alone wants the mean of both, who walks alone and who stands what was seen.
+    let user = "agent user: adult from here at 1 s id 1";
+    assert_eq!(
+        wanted(&format!("{user} {law}\nagents others: adult from here at 1 s except 1 {law}")),
+        [1.2, 1.2, -1.0, 0.0]
+    );
+    assert_eq!(
+        wanted(&format!("{user} {law}\ngroups others: adult from here at 1 s except 1 {law}")),
+        [1.2, 1.2, -1.0, 0.0]
+    );
+    // Without a law everybody goes on.
+    assert_eq!(
+        wanted(&format!("{user}\nagents others: adult from here at 1 s except 1")),
+        [1.4, 1.0, -1.0, 0.0]
+    );
+}
+
 /// The middle of a party that passes a post on both sides is near it or in it.
 #[test]
 fn a_party_beside_a_barrier_is_no_wider_than_its_distance() {

@@ -55,7 +55,7 @@ pub(super) fn followed(traces: &[Trace], batches: &[Batch], time: f64, user: Opt
         let stays = last == time || Some(trace.number) == user || !is_looked_at(point.position);
         let velocity = point.velocity.unwrap_or_else(Vec2::zeros);
         let id = trace.person.unwrap_or(UNKNOWN | trace.number as u32);
-        let sighting = Sighting { id, position: point.position, velocity, driving: velocity, density: 0.0 };
+        let sighting = Sighting::new(id, point.position, velocity);
         let past = trace.points.iter().map(|point| (point.time, point.position)).collect();
         stays.then_some(Followed { trace: trace.number, last, sighting, past })
     };

@@ -20,8 +20,8 @@ const LANGEVIN_NOISE: f64 = 0.2;
 /// The preset of a kind that names none.
 const USUAL: &str = "helbing2000";
 
-/// Fields of agents that would change the velocity.
-const CHANGING: [&str; 3] = ["heading", "speed", "route"];
+/// Fields of agents and groups that would change the velocity.
+const CHANGING: [&str; 4] = ["heading", "speed", "route", "attraction"];
 
 /// Parameters of the kinds without forces: no force, and the time in which velocities return to the recorded ones.
 const FREE: [(&str, &str); 7] = [

@@ -228,5 +228,5 @@ fn is_of_a_place(error: &Diagnostic) -> bool {
 
 /// A person as a model sees them.
 pub(super) fn sighting(id: u32, PersonState { position, velocity, .. }: &PersonState) -> Sighting {
-    Sighting { id, position: *position, velocity: *velocity, driving: *velocity, density: 0.0 }
+    Sighting::new(id, *position, *velocity)
 }

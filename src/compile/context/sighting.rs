@@ -7,6 +7,9 @@ use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Speed below which a recorded person stands, m/s.
+pub(crate) const STANDS: f64 = 0.05;
+
 /// Somebody at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {
@@ -18,8 +21,35 @@ pub struct Sighting {
     pub velocity: Vec2,
     /// The velocity that this person wants to have, m/s: the mean over the memory of the track.
     pub driving: Vec2,
+    /// The mean of that over all companions who walk, m/s: their common intention.
+    pub shared: Vec2,
     /// How many others are around, 1/m^2; 0 where that was not looked at.
     pub density: f64,
+}
+
+impl Sighting {
+    /// Somebody alone who goes on, at a position, m, with a velocity, m/s.
+    pub fn new(id: u32, position: Vec2, velocity: Vec2) -> Self {
+        Self { id, position, velocity, driving: velocity, shared: velocity, density: 0.0 }
+    }
+
+    /// The same with another velocity that is wanted, m/s.
+    fn who_wants(self, driving: Vec2) -> Self {
+        Self { driving, shared: driving, ..self }
+    }
+}
+
+/// Companions want what they want on the mean, all who walk; groups are of ascending ids.
+pub(crate) fn agree(people: &mut [Sighting], groups: &[Vec<u32>]) {
+    for group in groups {
+        let walks =
+            |one: &Sighting| group.binary_search(&one.id).is_ok() && one.driving.magnitude() >= STANDS;
+        let own: Vec<Vec2> = people.iter().filter(|one| walks(one)).map(|one| one.driving).collect();
+        let mean = own.iter().sum::<Vec2>() / own.len() as f64;
+        if mean.magnitude() >= STANDS {
+            people.iter_mut().filter(|one| walks(one)).for_each(|one| one.shared = mean);
+        }
+    }
 }
 
 /// So many of the nearest others tell the density around somebody.
@@ -106,17 +136,13 @@ impl Tracks {
     pub(crate) fn at(&self, time: f64) -> Vec<Sighting> {
         let mut people: Vec<Sighting> = match self {
             Self::Live { seen, memory } => {
-                let sighting = |one: &Sighting| Sighting { driving: seen.driving(one, *memory), ..*one };
+                let sighting = |one: &Sighting| one.who_wants(seen.driving(one, *memory));
                 seen.people.iter().map(sighting).collect()
             }
             Self::Recorded { recording, memory } => {
-                let before = |o: &PersonState| mean_velocity(recording, o, time, *memory);
-                let sighting = |o: PersonState| Sighting {
-                    id: o.id,
-                    position: o.position,
-                    velocity: o.velocity,
-                    driving: before(&o),
-                    density: 0.0,
+                let sighting = |o: PersonState| {
+                    let driving = mean_velocity(recording, &o, time, *memory);
+                    Sighting::new(o.id, o.position, o.velocity).who_wants(driving)
                 };
                 recording.at(time).into_iter().map(sighting).collect()
             }

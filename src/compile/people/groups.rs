@@ -5,12 +5,16 @@ use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::compile::behaviour::attachment;
 use crate::compile::context::{
-    Context, Locals, Lowered, conducts::With, people::People, sighting::Sighting, symbols::Meaning,
+    Context, Locals, Lowered,
+    conducts::With,
+    people::People,
+    sighting::{Sighting, agree},
+    symbols::Meaning,
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::people::{
     self, headed,
-    intended::{Intended, STANDS, parted},
+    intended::{Intended, parted},
     intentions, kinds, positions, recordings,
 };
 use crate::model::{self, AgentId, Barrier, Body, Group, Parameter, Particle, Route, Start};
@@ -192,19 +196,19 @@ fn seen_together<'a>(
         people::define_empty(context, &decl.name, decl.plural || decl.particle.is_none(), with);
         return;
     };
-    let placed = recordings::onto_rims(context, recorded, chosen.people, &common.body[Parameter::Radius]);
-    let mut parties: Vec<Vec<Sighting>> = if decl.plural {
+    let mut placed = recordings::onto_rims(context, recorded, chosen.people, &common.body[Parameter::Radius]);
+    if !decl.plural {
+        // Whoever is declared as one group is one, whatever is inferred.
+        let ids: Vec<u32> = placed.iter().map(|one| one.id).collect();
+        agree(&mut placed, &[ids]);
+    }
+    let parties: Vec<Vec<Sighting>> = if decl.plural {
         let at = |one: &Sighting| placed.iter().find(|other| other.id == one.id).copied().unwrap_or(*one);
         chosen.parties.iter().map(|party| party.iter().map(at).collect()).collect()
     } else {
         vec![placed]
     };
     let drawn = decl.particle.is_none() && common.intended.is_drawn();
-    if drawn {
-        for party in &mut parties {
-            agree(party);
-        }
-    }
     if !decl.plural && decl.particle.is_some() && parties[0].is_empty() {
         people::unseen(context, &decl.name, common.body.clone(), with, people);
         return;
@@ -277,17 +281,6 @@ impl People {
     }
 }
 
-/// Companions want what they want on the mean, all who walk.
-fn agree(party: &mut [Sighting]) {
-    let walk: Vec<&mut Sighting> = party.iter_mut().filter(|one| one.driving.norm() >= STANDS).collect();
-    let mean = walk.iter().map(|one| one.driving).sum::<Vec2>() / walk.len() as f64;
-    if mean.norm() >= STANDS {
-        for one in walk {
-            one.driving = mean;
-        }
-    }
-}
-
 /// People who are seen together as one: at their mean, with their mean velocity.
 fn together(party: &[Sighting]) -> Sighting {
     let count = party.len() as f64;
@@ -297,6 +290,7 @@ fn together(party: &[Sighting]) -> Sighting {
         position: mean(|one| one.position),
         velocity: mean(|one| one.velocity),
         driving: mean(|one| one.driving),
+        shared: mean(|one| one.driving),
         density: party.iter().map(|one| one.density).sum::<f64>() / count,
     }
 }

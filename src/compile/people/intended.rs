@@ -9,8 +9,6 @@ use crate::model::Law;
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Value};
 use crate::syntax::source::Span;
 
-/// Speed below which a recorded person stands, m/s.
-pub(crate) const STANDS: f64 = 0.05;
 /// What stands for the recorded heading or speed.
 pub(crate) const RECORDED: &str = "recorded";
 /// The name of the speed that somebody recorded would have alone.

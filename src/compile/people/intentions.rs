@@ -3,15 +3,14 @@
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
     number::Number,
-    sighting::{Sighting, Site},
+    sighting::{STANDS, Sighting, Site},
     symbols::{Meaning, unknown},
     typed::Typed,
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::laws::{self, distribution};
 use crate::compile::people::intended::{
-    Goals, Intended, RECORDED, STANDS, WANTED, destinations, is_of_site, is_recorded, is_speed, wanted,
-    weights,
+    Goals, Intended, RECORDED, WANTED, destinations, is_of_site, is_recorded, is_speed, wanted, weights,
 };
 use crate::model::{Body, Goal, Law, Leg, Parameter, Route, Start};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Field, Value};

@@ -22,12 +22,12 @@ use crate::compile::context::{
     conducts::With,
     kind::Kind,
     people::{People, entities},
-    sighting::Sighting,
+    sighting::{STANDS, Sighting},
     symbols::{Meaning, unknown},
 };
 use crate::compile::dimension::Dimension;
 use crate::compile::lower::laws;
-use crate::compile::people::intended::{Intended, STANDS, parted};
+use crate::compile::people::intended::{Intended, parted};
 use crate::model::{Agent, AgentId, Body, Goal, Law, Leg, Parameter, Route, Source, Start};
 use crate::syntax::ast::{AgentsDecl, Expr, Field, Ident};
 use crate::syntax::codes::Code;
@@ -259,6 +259,8 @@ pub(crate) fn walker(
     route: &Route,
     intended: &Intended<'_>,
 ) -> Lowered<(Arc<Body>, Start, Route)> {
+    // Around the heading of one alone a law would be wider than around that of the companions.
+    let seen = &if intended.is_drawn() { Sighting { driving: seen.shared, ..*seen } } else { *seen };
     let (mut body, mut start, mut route) = (moving(kind, seen, own_speed), start(seen), route.clone());
     intentions::intend(context, intended, (seen, kind), (&mut body, &mut start, &mut route))?;
     Ok((Arc::new(body), start, route))

@@ -2,7 +2,7 @@
 
 use crate::compile::context::{
     Context, Locals, Lowered, Reported,
-    sighting::{Sighting, Tracks},
+    sighting::{Sighting, Tracks, agree},
     symbols::{Meaning, unknown},
 };
 use crate::compile::dimension::Dimension;
@@ -51,12 +51,13 @@ pub(crate) fn sighted(context: &mut Context<'_>, recorded: &Recorded, single: bo
     let index = named_tracks(context, &recorded.tracks);
     let (time, ids, index) = (time?, ids.into_iter().collect::<Lowered<Vec<_>>>()?, index?);
     let Some(Some(tracks)) = context.tracks.known.get(index) else { return Err(Reported) };
-    let found = tracks.at(time.value);
+    let mut found = tracks.at(time.value);
     let is_live = matches!(tracks, Tracks::Live { .. });
     let groups = match tracks {
         Tracks::Live { seen, .. } => seen.groups.clone(),
         Tracks::Recorded { .. } => context.tracks.grouping.map(|group| group(&found)).unwrap_or_default(),
     };
+    agree(&mut found, &groups);
     if let (true, Tracks::Recorded { recording, .. }) = (found.is_empty(), tracks) {
         let near = recording.nearest_time(time.value);
         let hint = near.map_or("the recording is empty".to_owned(), |t| {
