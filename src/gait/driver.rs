@@ -4,14 +4,14 @@ use super::model::LearnedGait;
 use super::synthetic::{Person, SyntheticGait};
 use super::walk::{Ground, HybridAStar, NoStep, OtherBody, PlacedStep, Search, Walk, Walker, least_gap};
 use super::{Foot, Gait, SPANS};
-use crate::base::geometry::{Bounds, Vec2};
+use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::{Purpose, Stream, name_hash};
 use crate::kernel::driver::{Driver, Drivers, Memory, Occasion, Plan, Sample, Situation, Trajectory};
 use crate::kernel::{Slot, State};
 use crate::model::{Agent, AgentId, GaitRule, Goal, Leg, Parameter, Position, Scenario, SearchRule};
 use crate::route::Ways;
 use crate::route::grid::{ClearanceGrid, GoalField};
-use crate::route::planner::{middle, point_in, widest};
+use crate::route::planner::{exits, middle, point_in, widest};
 use crate::route::roadmap::FreeSpace;
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -63,6 +63,18 @@ impl Floor {
         Self { ground: Ground::new(free, grid), radius, fields: RwLock::default() }
     }
 
+    /// Which of several exits has the shortest way from a place; of equal ones the first.
+    fn nearest(&self, from: Vec2, exits: &[Shape]) -> usize {
+        let length = |exit: &Shape| {
+            let goal = exit.inner_point();
+            let way = self.field(goal).way(self.ground.grid(), from, goal);
+            way.map_or(f64::INFINITY, |way| way.length)
+        };
+        let all = exits.iter().map(length).enumerate();
+        let first = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+        if exits.len() < 2 { 0 } else { all.min_by(first).map_or(0, |(k, _)| k) }
+    }
+
     /// The ways to a place.
     fn field(&self, goal: Vec2) -> Arc<GoalField> {
         let known = self.fields.read().unwrap_or_else(PoisonError::into_inner);
@@ -84,6 +96,8 @@ struct Remembered {
     person: Arc<dyn Gait + Send + Sync>,
     /// The goal of the present leg, how many legs are left, and the point that is drawn.
     goal: Option<(Goal, usize)>,
+    /// Which exit of that goal it is: a region has one or more, a point has none.
+    exit: usize,
     point: Vec2,
     /// How often in a row no step was found.
     tries: u32,
@@ -204,6 +218,7 @@ impl Steppers {
             walker,
             person: self.person(situation)?,
             goal: None,
+            exit: 0,
             point: situation.position,
             tries: 0,
             waits: 0,
@@ -248,22 +263,24 @@ impl Steppers {
                 Arc::new(GoalField::straight(known.point))
             }
             (None, Some(goal)) => {
+                let exits = exits(scene, goal);
                 if known.goal.as_ref().is_none_or(|(known, then)| known != goal || *then != left) {
                     known.walker.forget_planned();
+                    known.exit = floor.nearest(known.walker.at, exits);
                     // In the paper walks end near the middle.
-                    known.point = match stepper.search {
-                        SearchRule::AsPublished => middle(scene, goal),
-                        _ => floor.ground.beside(point_in(
-                            scene,
-                            |p| floor.ground.is_free(p),
-                            goal,
-                            radius,
-                            draw,
-                        )),
+                    known.point = match (exits.get(known.exit), &stepper.search) {
+                        (Some(exit), SearchRule::AsPublished) => exit.inner_point(),
+                        (Some(exit), _) => {
+                            let is_free = |p| floor.ground.is_free(p);
+                            floor.ground.beside(point_in(exit, is_free, radius, draw))
+                        }
+                        (None, SearchRule::AsPublished) => middle(scene, goal),
+                        (None, _) => floor.ground.beside(middle(scene, goal)),
                     };
                     known.goal = Some((goal.clone(), left));
                 }
-                floor.field(middle(scene, goal))
+                let centre = exits.get(known.exit).map(Shape::inner_point);
+                floor.field(centre.unwrap_or_else(|| middle(scene, goal)))
             }
             (None, None) => return Some(Plan::Stand(f64::INFINITY)),
         };
@@ -275,7 +292,8 @@ impl Steppers {
             && is_taken(known.point)
         {
             let is_free = |p: Vec2| floor.ground.is_free(p) && !is_taken(p);
-            let point = point_in(scene, is_free, goal, radius, draw);
+            let exit = exits(scene, goal).get(known.exit);
+            let point = exit.map_or(known.point, |exit| point_in(exit, is_free, radius, draw));
             if is_free(point) {
                 known.walker.forget_planned();
                 known.point = point;

@@ -68,7 +68,7 @@ impl Place<'_> {
     pub(super) fn places(&self, scene: &Scene, rows: u32) -> Vec<Vec2> {
         let all = match self {
             Self::Point(point) => vec![*point],
-            Self::Shape(shape) => places(shape, rows),
+            Self::Shape(shape) => shape.parts().iter().flat_map(|part| places(part, rows)).collect(),
         };
         let free = all.iter().copied().filter(|p| inside(scene, *p).is_none()).collect::<Vec<_>>();
         if free.is_empty() { all } else { free }

@@ -15,7 +15,7 @@ pub(crate) mod step;
 pub(crate) mod stepping;
 pub(crate) mod tracks;
 
-use crate::base::geometry::{Shape, Vec2};
+use crate::base::geometry::Vec2;
 use crate::compile::behaviour::attachment;
 use crate::compile::context::{
     Context, Locals, Lowered,
@@ -136,15 +136,13 @@ pub(crate) fn members(
                 context.note(error);
             }
             let chooses = |goal: &Goal| match goal {
-                Goal::Region(id) => {
-                    matches!(context.scene.regions[id.0 as usize].shape, Shape::Parts(_))
-                }
+                Goal::Region(id) => !context.scene.regions[id.0 as usize].exits.is_empty(),
                 Goal::Point(_) => false,
             };
             let is_led = body.planner.is_some() || body.stepper.is_some();
             if k == 0 && is_led && route.goals().any(chooses) {
-                let error = error!(E0408, name.span, "`{}` walks on planned paths or by steps, and cannot choose between exits", name.name;
-                    hint: "name one region as the goal");
+                let error = error!(E0408, name.span, "`{}` walks on planned paths or by steps, and does not look for the quickest exit", name.name;
+                    hint: "choose the nearest one: `nearest(…)`");
                 context.note(error);
             }
             // Equal bodies are kept once.

@@ -1,5 +1,6 @@
 //! Routes and moves.
 
+use crate::base::geometry::Shape;
 use crate::base::tick::Tick;
 use crate::compile::context::{
     Context, Locals, Lowered, Reported, people::People, symbols::Meaning, typed::Typed,
@@ -199,6 +200,13 @@ fn lower_paths<'a>(context: &mut Context<'a>, decl: &'a PathsDecl, people: &Peop
         return context.report(
             error.hint("declare its kind as `planned`: `kind planner: planned { limit speed = 1.5 m/s }`"),
         );
+    }
+    let first = people.agents[agent.0 as usize].route.goals().next();
+    if let Some(Goal::Region(id)) = first
+        && let Shape::Parts(_) = context.scene.regions[id.0 as usize].shape
+    {
+        let said = format!("`{}` chooses between exits, and paths lead to one goal", decl.agent.name);
+        return context.report(error!(E0408, decl.agent.span, "{said}"; hint: "name one region as the goal"));
     }
     let options = (0..most as u32).map(|k| (format!("path {}", k + 1), Move::Path(k))).collect();
     Ok(Moves {

@@ -1,10 +1,11 @@
 //! What a plan is for: the goals of the route up to the next pause, each with the point that a walker has drawn in it. In a scene
 //! with levels, it is the goals on one island, or the line of the stairs that lead to the first one.
 
-use crate::base::geometry::Vec2;
+use super::terrain::{Terrain, exits};
+use crate::base::geometry::{Shape, Vec2};
 use crate::base::random::Stream;
-use crate::model::{Goal, Leg, Scene};
-use crate::route::roadmap::FreeSpace;
+use crate::model::{Goal, Leg, Scene, Storeys};
+use crate::route::roadmap::shortest;
 
 /// Most points that are drawn in a region until one is free.
 const TRIES: u32 = 200;
@@ -27,6 +28,8 @@ pub struct Floor<'a> {
     pub scene: &'a Scene,
     /// Its number; 0 without levels.
     pub island: usize,
+    /// The levels of the whole scene.
+    pub storeys: &'a Storeys,
     /// How many of the legs lie there.
     pub legs: usize,
     /// The line of stairs that the way leads across, as a place on it and one behind it, m.
@@ -34,17 +37,45 @@ pub struct Floor<'a> {
 }
 
 impl Errand {
-    /// The goals at the beginning of some legs, for a body of a radius, m. The same legs have the same points in all plans of a
-    /// person in a trial: the draws are addressed by how many legs are left.
-    pub fn new(floor: &Floor<'_>, free: &FreeSpace, legs: &[Leg], radius: f64, stream: Stream) -> Self {
+    /// The goals at the beginning of some legs, for a body of a radius, m, on its way from a place, m. The same legs have the same
+    /// points in all plans of a person in a trial: the draws are addressed by how many legs are left. Of several exits it is the one
+    /// to which the shortest path leads, of equal ones the first.
+    pub fn new(
+        floor: &Floor<'_>,
+        terrain: &Terrain,
+        legs: &[Leg],
+        (from, radius): (Vec2, f64),
+        stream: Stream,
+    ) -> Self {
         if let Some([line, beyond]) = floor.over {
             return Self { points: vec![line], beyond: Some(beyond) };
         }
         let goals = legs.iter().take(floor.legs);
         let goals = goals.map_while(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None });
         let left = |k: usize| GOALS | ((legs.len() - k) as u32) << 8;
+        let is_here = |part: &&Shape| {
+            floor.storeys.are_none() || floor.storeys.island_at(part.inner_point()) == floor.island
+        };
+        let length = |from: Vec2, to: Vec2| {
+            let path = shortest(&terrain.roadmap, &terrain.free, from, to)?;
+            Some(path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>())
+        };
+        let mut before = from;
         let point = |(k, goal): (usize, &Goal)| {
-            point_in(floor.scene, |p| free.is_free(p), goal, radius, |n| stream.uniform_pair(left(k) + n))
+            let draw = |n| stream.uniform_pair(left(k) + n);
+            let inside = |part: &Shape| point_in(part, |p| terrain.free.is_free(p), radius, draw);
+            let ends: Vec<Vec2> = match goal {
+                Goal::Point(point) => vec![*point],
+                Goal::Region(_) => exits(floor.scene, goal).iter().filter(is_here).map(inside).collect(),
+            };
+            before = match ends[..] {
+                [end] => end,
+                _ => {
+                    let far = |end: &Vec2| length(before, *end).unwrap_or(f64::INFINITY);
+                    ends.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
+                }
+            };
+            before
         };
         Self { points: goals.enumerate().map(point).collect(), beyond: None }
     }
@@ -61,21 +92,13 @@ impl Errand {
     }
 }
 
-/// A free point of a goal, a radius inside if there is room; of a region without one its middle.
+/// A free point of a shape, a radius inside if there is room; of one without such a point its middle.
 pub fn point_in(
-    scene: &Scene,
+    shape: &Shape,
     is_free: impl Fn(Vec2) -> bool,
-    goal: &Goal,
     radius: f64,
     draw: impl Fn(u32) -> [f64; 2],
 ) -> Vec2 {
-    let shape = match goal {
-        Goal::Point(point) => return *point,
-        Goal::Region(id) => match scene.regions.get(id.0 as usize) {
-            Some(region) => &region.shape,
-            None => return Vec2::zeros(),
-        },
-    };
     let bounds = shape.bounds();
     let size = bounds.high - bounds.low;
     let is_inside = |p: Vec2| shape.depth(p) >= radius;

@@ -12,6 +12,6 @@ pub use errand::{Errand, Floor, point_in};
 pub use options::{PathOption, path_options};
 pub use reach::doubt;
 pub use speeds::{Course, Speeds, pieces_of, stretches};
-pub use terrain::{Terrain, Terrains, middle, widest};
+pub use terrain::{Terrain, Terrains, exits, middle, widest};
 pub(in crate::route) use walker::walkers;
 pub use walker::{Outline, Walkers, Wish};

@@ -1,6 +1,6 @@
 //! The free space and the roadmap of a kind of walkers, made once a run.
 
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Shape, Vec2};
 use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
 use crate::model::{Agent, Goal, Law, Parameter, Planner, RoadmapRule, Scene};
 use crate::route::roadmap::{FreeSpace, Prm, Roadmap, Rrt, Sampler, SamplingRule};
@@ -31,6 +31,12 @@ pub struct Terrain {
 pub fn widest(law: &Law) -> f64 {
     let most = law.bounds().1;
     if most.is_finite() { most } else { law.draw(WIDEST) }
+}
+
+/// The exits of a goal: the parts of its region; none of a point.
+pub fn exits<'s>(scene: &'s Scene, goal: &Goal) -> &'s [Shape] {
+    let Goal::Region(id) = goal else { return &[] };
+    scene.regions.get(id.0 as usize).map_or(&[], |region| region.shape.parts())
 }
 
 /// The middle of a goal.

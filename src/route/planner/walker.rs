@@ -140,7 +140,7 @@ impl Walkers {
     ) -> Option<Floor<'a>> {
         let (scene, body) = (&scenario.scene, &scenario.agents[id.0 as usize].body);
         let Some(levels) = &self.levels else {
-            return Some(Floor { scene, island: 0, legs: legs.len(), over: None });
+            return Some(Floor { scene, island: 0, storeys: &scene.storeys, legs: legs.len(), over: None });
         };
         let (Some(Leg::To(goal)), Some(planner)) = (legs.first(), &body.planner) else { return None };
         let atlas = levels.of(0);
@@ -159,7 +159,7 @@ impl Walkers {
         };
         let over = way.over.map(|(portal, _)| [way.end, way.end + storeys.portals[portal].across * BEYOND]);
         let legs = if over.is_some() { 0 } else { 1 + legs[1..].iter().take_while(stays).count() };
-        Some(Floor { scene: atlas.islands[island].scene(), island, legs, over })
+        Some(Floor { scene: atlas.islands[island].scene(), island, storeys, legs, over })
     }
 
     /// The path of a class.
@@ -220,7 +220,8 @@ impl Wish<'_> {
     }
 
     fn errand(&self, floor: &Floor<'_>, terrain: &Terrain) -> Errand {
-        let mut errand = Errand::new(floor, &terrain.free, self.legs, self.speeds.radius, self.stream());
+        let mut errand =
+            Errand::new(floor, terrain, self.legs, (self.motion.0, self.speeds.radius), self.stream());
         // Whoever stands at a line of stairs has only to cross it.
         let is_there = |p: &Vec2| (p - self.motion.0).norm() < THERE;
         errand.points.retain(|p| floor.over.is_none() || !is_there(p));
