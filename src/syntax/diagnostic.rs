@@ -68,6 +68,8 @@ pub enum About {
     Crowd,
     /// A door without a wall.
     Door,
+    /// A level or stairs without a field.
+    Storey,
     /// Values of a parameter that make no difference.
     Idle,
 }

@@ -148,13 +148,16 @@ impl<'i> Broken<'i> {
     /// Whether a name may have been declared where it stands in what could not be read.
     fn may_declare(&self, place: Span) -> bool {
         let Some(text) = word(self.sources, place) else { return true };
-        let (name, _) = leading_word(bare(text));
+        let bare = bare(text);
+        let (name, _) = leading_word(bare);
+        // What belongs to a level stands in its block without the name of that.
+        let mut parts = bare.split('.').map(|part| leading_word(part).0);
         // A name may have grown together with the sign behind it: `nin 0 .. 3` for `n: 0 .. 3`.
         let is_longer = || {
             let longer = self.names.range(name..).next();
             longer.is_some_and(|longer| longer.starts_with(name))
         };
-        self.any_name || self.words.contains(name) || !self.names.is_empty() && is_longer()
+        self.any_name || parts.any(|part| self.words.contains(part)) || !self.names.is_empty() && is_longer()
     }
 
     /// Whether something in the block behind a name could not be read.
@@ -199,7 +202,8 @@ impl<'i> Broken<'i> {
         // With barriers that were not read there is less room for many, not more.
         let is_crowd = one.about == About::Crowd;
         let needs_barriers = INSIDE.contains(&one.code) && !is_crowd || one.about == About::Door;
-        let of_scenery = needs_barriers && self.scenery;
+        let of_scenery =
+            needs_barriers && self.scenery || one.about == About::Storey && self.is_torn_behind(place);
         // The room that bodies need is unknown if a part of them was not read.
         let of_bodies = is_crowd && scenario && (self.fields || self.any_name);
         // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.

@@ -110,7 +110,9 @@ pub(crate) fn set(context: &mut Context<'_>, doors: &[Door]) -> Vec<model::Door>
         let opened = geometry::open_at(&mut walls(&mut context.scene.barriers), segment);
         let width = segment.length();
         let text = &name.name;
-        if opened <= HAIR && !is_between {
+        // A wall whose places could not be read may be that of the door.
+        let is_unread = |one: &Barrier| matches!(&one.obstacle, Obstacle::Wall(pieces) if pieces.is_empty());
+        if opened <= HAIR && !is_between && !context.scene.barriers.iter().any(is_unread) {
             let error = error!(E0401, name.span, "the door `{text}` lies on no wall";
                 hint: "both of its ends must lie on one straight wall, or reach the walls beside it");
             context.note(error.about(About::Door));

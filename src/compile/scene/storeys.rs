@@ -19,6 +19,7 @@ use crate::model::storeys::APART;
 use crate::model::{Barrier, Island, Obstacle, Portal};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Value};
 use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::About;
 use crate::syntax::source::Span;
 
 /// Nearer than this to a barrier, the middle of a line of stairs lies in it, m.
@@ -124,9 +125,7 @@ pub(crate) fn settle<'a>(context: &mut Context<'a>, scenes: &[&'a [SceneItem]], 
         }
     }
     for (name, ends, fields) in stairs {
-        if is_sound {
-            let _ = flight(context, name, ends, fields);
-        }
+        let _ = flight(context, name, (ends, fields), is_sound);
     }
     for flight in of_files.iter().filter(|_| is_sound) {
         let _ = of_file(context, flight);
@@ -170,6 +169,7 @@ fn height(context: &mut Context<'_>, name: &Ident, fields: &[Field]) -> (Option<
             (known, _) => {
                 let error = unknown("field", known, field.name.span, Code::E0207, ["height"].into_iter());
                 context.note(error);
+                height = (None, name.span);
             }
         }
     }
@@ -183,7 +183,7 @@ fn check_heights(context: &mut Context<'_>, heights: &[(Option<f64>, Span)]) -> 
             let [a, b] = [first, k].map(|k| context.levels.all[k].name.clone());
             let error = error!(E0412, *span, "`{a}` and `{b}` have the same height";
                 hint: "write the height in which the floor of each level lies: `height = 4 m`");
-            context.note(error.related(heights[first].1, "the other level"));
+            context.note(error.related(heights[first].1, "the other level").about(About::Storey));
             return false;
         }
     }
@@ -270,38 +270,42 @@ struct Fields {
 
 fn fields(context: &mut Context<'_>, written: &[Field]) -> Lowered<Fields> {
     let mut out = Fields { width: None, run: None, speeds: [None; 2], table: 0 };
-    for field in written {
-        let name = field.name.name.as_str();
-        let Value::Plain(expr) = &field.value else {
-            return context.report(error!(E0305, field.value.span(), "expected a number"));
-        };
-        let mut number = |dimension| {
-            let number = context.number_of(expr, dimension, &Locals::default())?;
-            if number.value > 0.0 && number.value.is_finite() {
-                return Ok(number.value);
-            }
-            context.report(error!(E0412, expr.span, "`{name}` must be positive"))
-        };
-        match name {
-            "width" => out.width = Some(number(Dimension::LENGTH)?),
-            "run" => out.run = Some(number(Dimension::LENGTH)?),
-            "up" => out.speeds[0] = Some(number(Dimension::NONE)?),
-            "down" => out.speeds[1] = Some(number(Dimension::NONE)?),
-            "speeds" => {
-                let named = if let ExprKind::Name(name) = &expr.kind { name.as_str() } else { "" };
-                let Some(table) = TABLES.iter().position(|(table, _)| *table == named) else {
-                    return context.report(error!(E0412, expr.span, "`speeds` names a table";
-                        hint: "write `speeds = weidmann`, `speeds = sfpe`, or shares of the speed on a level: `up = 0.5; down = 0.6`"));
-                };
-                out.table = table;
-            }
-            _ => {
-                let known = ["width", "run", "up", "down", "speeds"].into_iter();
-                context.note(unknown("field", name, field.name.span, Code::E0207, known));
-            }
+    let read: Vec<Lowered<()>> = written.iter().map(|field| set(context, field, &mut out)).collect();
+    read.into_iter().collect::<Lowered<()>>().map(|()| out)
+}
+
+/// Sets one of the fields of stairs.
+fn set(context: &mut Context<'_>, field: &Field, out: &mut Fields) -> Lowered<()> {
+    let name = field.name.name.as_str();
+    let Value::Plain(expr) = &field.value else {
+        return context.report(error!(E0305, field.value.span(), "expected a number"));
+    };
+    let mut number = |dimension| {
+        let number = context.number_of(expr, dimension, &Locals::default())?;
+        if number.value > 0.0 && number.value.is_finite() {
+            return Ok(Some(number.value));
+        }
+        context.report(error!(E0412, expr.span, "`{name}` must be positive"))
+    };
+    match name {
+        "width" => out.width = number(Dimension::LENGTH)?,
+        "run" => out.run = number(Dimension::LENGTH)?,
+        "up" => out.speeds[0] = number(Dimension::NONE)?,
+        "down" => out.speeds[1] = number(Dimension::NONE)?,
+        "speeds" => {
+            let named = if let ExprKind::Name(name) = &expr.kind { name.as_str() } else { "" };
+            let Some(table) = TABLES.iter().position(|(table, _)| *table == named) else {
+                return context.report(error!(E0412, expr.span, "`speeds` names a table";
+                    hint: "write `speeds = weidmann`, `speeds = sfpe`, or shares of the speed on a level: `up = 0.5; down = 0.6`"));
+            };
+            out.table = table;
+        }
+        _ => {
+            let known = ["width", "run", "up", "down", "speeds"].into_iter();
+            return context.report(unknown("field", name, field.name.span, Code::E0207, known));
         }
     }
-    Ok(out)
+    Ok(())
 }
 
 /// A line of stairs on its level: its island, and the line.
@@ -309,6 +313,10 @@ fn line_of(context: &mut Context<'_>, name: &Ident, end: &Expr) -> Lowered<(u32,
     let typed = context.lower(end, &Locals::default())?;
     let Typed::Line(id) = typed else { return context.mismatch(end.span, "a line of a level", &typed) };
     let segment = context.scene.lines[id.0 as usize].segment;
+    if segment.length() == 0.0 {
+        // Its places could not be read.
+        return Err(Reported);
+    }
     check_line(context, (name, end.span), &segment)?;
     let middle = 0.5 * (segment.a + segment.b);
     Ok((context.scene.storeys.island_at(middle) as u32, segment))
@@ -355,11 +363,19 @@ fn rail(line: &Segment, across: Vec2) -> [Segment; 3] {
     [Segment::new(line.a, a), Segment::new(a, b), Segment::new(b, line.b)]
 }
 
-/// `stairs s: ground.foot -- first.head { … }`
-fn flight(context: &mut Context<'_>, name: &Ident, ends: &[Expr; 2], written: &[Field]) -> Lowered<()> {
+/// `stairs s: ground.foot -- first.head { … }`; without sound heights its parts are looked at alone.
+fn flight(
+    context: &mut Context<'_>,
+    name: &Ident,
+    (ends, written): (&[Expr; 2], &[Field]),
+    is_sound: bool,
+) -> Lowered<()> {
     let read = fields(context, written);
     let (foot, head) = (line_of(context, name, &ends[0]), line_of(context, name, &ends[1]));
     let (fields, (low, foot), (high, head)) = (read?, foot?, head?);
+    if !is_sound {
+        return Err(Reported);
+    }
     let storeys = &context.scene.storeys;
     let [lower, upper] = [low, high].map(|k| storeys.islands[k as usize].clone());
     match (lower.height, upper.height) {
@@ -411,8 +427,9 @@ fn raise(
     fields: &Fields,
 ) -> Lowered<()> {
     let Some(run) = run else {
-        return context.report(error!(E0412, name.span, "the stairs `{}` have no length", name.name;
-            hint: "write how far they lead in the plan: `run = 6 m`"));
+        let error = error!(E0412, name.span, "the stairs `{}` have no length", name.name;
+            hint: "write how far they lead in the plan: `run = 6 m`");
+        return context.report(error.about(About::Storey));
     };
     let most = foot.length().min(head.length());
     let width = fields.width.unwrap_or(most);
