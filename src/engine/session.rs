@@ -118,7 +118,7 @@ pub fn run(
         replay: again(call, budget, &results),
         results,
         elapsed_s: budget.elapsed(),
-        warnings: untrusted.warnings(study),
+        warnings: untrusted.dependence.warnings(study),
         ..CallResult::of(title, call.seed)
     })
 }
@@ -166,11 +166,6 @@ pub fn forecast(
     executor: &dyn Executor,
     budget: &Budget,
 ) -> Result<CallForecast, Fault> {
-    // Trials of the kernel are independent; others are watched.
-    let untrusted = Untrusted::new(executor, call.repeats);
-    let is_played = |world: &World| world.scenario.processes.outside.is_some();
-    let is_outside = call.repeats || call.line.outcomes || study.worlds.iter().any(is_played);
-    let executor: &dyn Executor = if is_outside { &untrusted } else { executor };
     let asked = asked(study, call);
     let worlds = prepare(study, &asked, call)?;
     let session = Session { call, budget, worlds: &worlds };

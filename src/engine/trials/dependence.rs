@@ -18,7 +18,7 @@ const FAR: f64 = 4.0;
 
 /// Runs of equal truth values in the trials of each column of each world, as far as they were looked at.
 #[derive(Default)]
-struct Dependence(Mutex<BTreeMap<(usize, usize, Advice), Runs>>);
+pub struct Dependence(Mutex<BTreeMap<(usize, usize, Advice), Runs>>);
 
 /// The option of a ranking of moves that an item follows.
 type Advice = Option<(usize, usize)>;
@@ -70,7 +70,7 @@ impl Dependence {
     }
 
     /// A warning for each column whose outcomes are not independent.
-    fn warnings(&self, study: &Study) -> Vec<String> {
+    pub fn warnings(&self, study: &Study) -> Vec<String> {
         let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let far = all.iter().filter(|(_, runs)| runs.distance().abs() > FAR);
         far.map(|((world, column, _), runs)| {
@@ -94,7 +94,8 @@ const TWICE: u64 = 100;
 /// An executor whose trials the kernel does not make: its outcomes are looked at.
 pub struct Untrusted<'a> {
     own: &'a dyn Executor,
-    dependence: Dependence,
+    /// What the outcomes tell.
+    pub dependence: Dependence,
     /// Whether one trial in a hundred runs twice: a driver that answers otherwise the second time says so itself, as a fault.
     is_twice: bool,
 }
@@ -103,11 +104,6 @@ impl<'a> Untrusted<'a> {
     /// Of this executor.
     pub fn new(own: &'a dyn Executor, is_twice: bool) -> Self {
         Self { own, dependence: Dependence::default(), is_twice }
-    }
-
-    /// A warning for each column whose outcomes are not independent.
-    pub fn warnings(&self, study: &Study) -> Vec<String> {
-        self.dependence.warnings(study)
     }
 
     /// The places of the items that run twice.
