@@ -11,7 +11,7 @@ use crate::kernel::{Slot, State};
 use crate::model::{Agent, AgentId, GaitRule, Goal, Leg, Parameter, Position, Scenario, SearchRule};
 use crate::route::Ways;
 use crate::route::grid::{ClearanceGrid, GoalField};
-use crate::route::planner::{exits, middle, point_in, widest};
+use crate::route::planner::{exits, middle, point_in, shortest_of, widest};
 use crate::route::roadmap::FreeSpace;
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -63,16 +63,13 @@ impl Floor {
         Self { ground: Ground::new(free, grid), radius, fields: RwLock::default() }
     }
 
-    /// Which of several exits has the shortest way from a place; of equal ones the first.
+    /// Which of several exits has the shortest way from a place.
     fn nearest(&self, from: Vec2, exits: &[Shape]) -> usize {
         let length = |exit: &Shape| {
             let goal = exit.inner_point();
-            let way = self.field(goal).way(self.ground.grid(), from, goal);
-            way.map_or(f64::INFINITY, |way| way.length)
+            self.field(goal).way(self.ground.grid(), from, goal).map(|way| way.length)
         };
-        let all = exits.iter().map(length).enumerate();
-        let first = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
-        if exits.len() < 2 { 0 } else { all.min_by(first).map_or(0, |(k, _)| k) }
+        if exits.len() < 2 { 0 } else { shortest_of(exits.iter().map(length)) }
     }
 
     /// The ways to a place.
@@ -264,23 +261,26 @@ impl Steppers {
             }
             (None, Some(goal)) => {
                 let exits = exits(scene, goal);
-                if known.goal.as_ref().is_none_or(|(known, then)| known != goal || *then != left) {
-                    known.walker.forget_planned();
+                let is_new = known.goal.as_ref().is_none_or(|(known, then)| known != goal || *then != left);
+                if is_new {
                     known.exit = floor.nearest(known.walker.at, exits);
+                }
+                let exit = exits.get(known.exit);
+                let centre = exit.map_or_else(|| middle(scene, goal), Shape::inner_point);
+                if is_new {
+                    known.walker.forget_planned();
                     // In the paper walks end near the middle.
-                    known.point = match (exits.get(known.exit), &stepper.search) {
-                        (Some(exit), SearchRule::AsPublished) => exit.inner_point(),
+                    known.point = match (exit, &stepper.search) {
+                        (_, SearchRule::AsPublished) => centre,
+                        (None, _) => floor.ground.beside(centre),
                         (Some(exit), _) => {
                             let is_free = |p| floor.ground.is_free(p);
                             floor.ground.beside(point_in(exit, is_free, radius, draw))
                         }
-                        (None, SearchRule::AsPublished) => middle(scene, goal),
-                        (None, _) => floor.ground.beside(middle(scene, goal)),
                     };
                     known.goal = Some((goal.clone(), left));
                 }
-                let centre = exits.get(known.exit).map(Shape::inner_point);
-                floor.field(centre.unwrap_or_else(|| middle(scene, goal)))
+                floor.field(centre)
             }
             (None, None) => return Some(Plan::Stand(f64::INFINITY)),
         };

@@ -1,7 +1,7 @@
 //! What a plan is for: the goals of the route up to the next pause, each with the point that a walker has drawn in it. In a scene
 //! with levels, it is the goals on one island, or the line of the stairs that lead to the first one.
 
-use super::terrain::{Terrain, exits};
+use super::terrain::{Terrain, exits, middle};
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::random::Stream;
 use crate::model::{Goal, Leg, Scene, Storeys};
@@ -53,9 +53,7 @@ impl Errand {
         let goals = legs.iter().take(floor.legs);
         let goals = goals.map_while(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None });
         let left = |k: usize| GOALS | ((legs.len() - k) as u32) << 8;
-        let is_here = |part: &&Shape| {
-            floor.storeys.are_none() || floor.storeys.island_at(part.inner_point()) == floor.island
-        };
+        let is_here = |part: &&Shape| floor.storeys.island_at(part.inner_point()) == floor.island;
         let length = |from: Vec2, to: Vec2| {
             let path = shortest(&terrain.roadmap, &terrain.free, from, to)?;
             Some(path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>())
@@ -64,15 +62,13 @@ impl Errand {
         let point = |(k, goal): (usize, &Goal)| {
             let draw = |n| stream.uniform_pair(left(k) + n);
             let inside = |part: &Shape| point_in(part, |p| terrain.free.is_free(p), radius, draw);
-            let ends: Vec<Vec2> = match goal {
-                Goal::Point(point) => vec![*point],
-                Goal::Region(_) => exits(floor.scene, goal).iter().filter(is_here).map(inside).collect(),
-            };
-            before = match ends[..] {
-                [end] => end,
-                _ => {
-                    let far = |end: &Vec2| length(before, *end).unwrap_or(f64::INFINITY);
-                    ends.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
+            before = match exits(floor.scene, goal) {
+                [] => middle(floor.scene, goal),
+                [one] => inside(one),
+                all => {
+                    let ends: Vec<Vec2> = all.iter().filter(is_here).map(inside).collect();
+                    let ways = ends.iter().map(|end| length(before, *end));
+                    ends.get(shortest_of(ways)).copied().unwrap_or_else(|| middle(floor.scene, goal))
                 }
             };
             before
@@ -90,6 +86,12 @@ impl Errand {
         let count = self.points.len() - usize::from(self.beyond.is_none() && !self.points.is_empty());
         &self.points[..count]
     }
+}
+
+/// Which of some ways is the shortest, m; of equal ones the first.
+pub fn shortest_of(ways: impl Iterator<Item = Option<f64>>) -> usize {
+    let ways = ways.map(|way| way.unwrap_or(f64::INFINITY)).enumerate();
+    ways.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| k)
 }
 
 /// A free point of a shape, a radius inside if there is room; of one without such a point its middle.

@@ -8,7 +8,7 @@ mod speeds;
 mod terrain;
 mod walker;
 
-pub use errand::{Errand, Floor, point_in};
+pub use errand::{Errand, Floor, point_in, shortest_of};
 pub use options::{PathOption, path_options};
 pub use reach::doubt;
 pub use speeds::{Course, Speeds, pieces_of, stretches};
